@@ -40,7 +40,14 @@ impl Camera {
 
     /// View to clip space with reversed depth: 1 at the near plane, 0 at the far plane.
     pub fn clip_from_view(&self, aspect: f32) -> Mat4 {
-        Mat4::perspective_rh(self.fov_y_deg.to_radians(), aspect, self.far, self.near)
+        let focal = 1.0 / (0.5 * self.fov_y_deg.to_radians()).tan();
+        let (n, f) = (self.near, self.far);
+        Mat4::from_cols(
+            glam::vec4(focal / aspect, 0.0, 0.0, 0.0),
+            glam::vec4(0.0, focal, 0.0, 0.0),
+            glam::vec4(0.0, 0.0, n / (f - n), -1.0),
+            glam::vec4(0.0, 0.0, n * f / (f - n), 0.0),
+        )
     }
 
     /// World to clip space, `aspect` = width / height.
