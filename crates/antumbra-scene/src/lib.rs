@@ -5,13 +5,16 @@
 #![deny(missing_docs)]
 
 mod bounds;
+pub mod builtin;
 mod camera;
+mod error;
 mod light;
 mod mesh;
 mod scene;
 
 pub use bounds::Aabb;
 pub use camera::Camera;
+pub use error::SceneError;
 pub use light::RectLight;
 pub use mesh::{Material, Mesh, Texture, Wrap};
 pub use scene::{Instance, Scene};

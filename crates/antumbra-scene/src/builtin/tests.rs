@@ -1,0 +1,1 @@
+//! Promises that every built-in scene keeps.
