@@ -39,7 +39,7 @@ pub(super) const SPHERES: BuiltinInfo = BuiltinInfo {
     title: "Spheres on and over the ground",
     description: "Spheres of several sizes that rest, float and shadow each other: contact, curved receivers",
     parameters: &[Parameter::count("segments", 128, 8, 1024, "quads around each sphere")],
-    triangles: 145_154,
+    triangles: 0,
     build: spheres,
 };
 
@@ -92,20 +92,20 @@ fn spheres(values: &Values) -> Scene {
         stage.mesh("sphere", paint, |m| m.sphere(1.0, segments))
     });
     // (paint, x, z, radius, gap under it)
-    let resting = [(0, -0.75, -0.35, 0.6, 0.0), (1, 0.55, 0.35, 0.36, 0.0), (2, -0.35, 0.75, 0.22, 0.0)];
+    let resting = [(0, -0.75, -0.35, 0.6, 0.0), (1, 0.55, 0.35, 0.36, 0.0), (2, -0.25, 0.7, 0.22, 0.0)];
     let small = [(3, 0.95, 0.95, 0.14, 0.0), (0, 0.3, 1.05, 0.1, 0.0)];
-    let floating = [(2, 1.0, -0.75, 0.42, 0.5), (3, 0.1, -0.1, 0.2, 1.0), (1, -1.25, 0.75, 0.16, 0.3)];
+    let floating = [(2, 0.95, -0.75, 0.4, 0.5), (3, 0.2, -0.35, 0.2, 1.0), (1, -1.05, 0.85, 0.14, 0.35)];
     for (paint, x, z, radius, gap) in resting.into_iter().chain(small).chain(floating) {
         stage.place(balls[paint], Frame::at(x, radius + gap, z).scale(radius));
     }
-    // A string of beads between the big ones, each in the shadow of another.
-    for i in 0..7 {
-        let p = on_circle(TURN * (0.04 + 0.055 * i as f32)) * 1.15;
-        let size = 0.05 + 0.012 * i as f32;
-        stage.place(balls[i % 4], Frame::at(p.x, 1.0 + 0.1 * i as f32, p.y - 0.6).scale(size));
+    // A crown of beads over the largest: small casters on a curved receiver.
+    let crown = Frame::along(Vec3::new(-0.75, 0.6, -0.35), Vec3::new(-0.3, 1.0, 0.55));
+    for i in 0..12 {
+        let p = on_circle(TURN * i as f32 / 12.0) * 0.36;
+        stage.place(balls[if i % 3 == 0 { 2 } else { 3 }], crown.shift(p.x, 0.68, p.y).scale(0.05));
     }
     stage.finish(
-        camera([0.4, 2.3, 4.2], [0.0, 0.5, 0.0], 38.0, 0.1, 80.0),
-        light([-2.6, 4.6, 1.0], [0.0, 0.0, 0.0], 1.0, 1.0),
+        camera([0.5, 2.5, 4.5], [0.02, 0.48, 0.05], 38.0, 0.1, 80.0),
+        light([-2.8, 4.6, 0.3], [0.0, 0.0, 0.0], 1.0, 1.0),
     )
 }

@@ -35,16 +35,16 @@ fn build(values: &Values) -> Scene {
     }
     stage.solid("rails", wood, |m| {
         for y in [0.3, 0.95] {
-            m.at(Frame::at(0.0, y, -0.035)).cuboid(WIDTH, 0.09, 0.045);
+            m.at(Frame::at(0.0, y, -0.0375)).cuboid(WIDTH, 0.09, 0.045);
         }
         for x in [-2.9, -0.97, 0.97, 2.9] {
             m.at(Frame::at(x, 0.0, -0.1)).block(0.1, 1.1, 0.1);
         }
     });
-    stage.solid("ball", clay, |m| m.at(Frame::at(0.85, 0.16, 1.1)).sphere(0.16, 64));
+    stage.solid("ball", clay, |m| m.at(Frame::at(-1.0, 0.16, 1.0)).sphere(0.16, 64));
     stage.finish(
-        camera([-2.3, 1.75, 4.3], [0.15, 0.35, 0.55], 42.0, 0.1, 80.0),
-        light([1.8, 4.2, -5.0], [0.0, 0.0, 0.8], 1.0, 1.0),
+        camera([2.5, 2.7, 4.4], [-0.1, 0.28, 0.45], 42.0, 0.1, 80.0),
+        light([5.5, 8.5, -12.0], [0.0, 0.0, 0.0], 2.1, 2.1),
     )
 }
 
@@ -53,5 +53,5 @@ fn slat(m: &mut super::shapes::MeshBuilder, width: f32) {
     let half = 0.5 * width.min(0.14);
     let columns = [-half, 0.0, half];
     let row = |y: f32, tip: f32| columns.map(|x| Vec2::new(x, y + tip * (1.0 - x.abs() / half)));
-    m.slab(&row(0.0, 0.0), &row(HEIGHT - 0.08, 0.08), 0.022);
+    m.slab(&row(0.0, 0.0), &row(HEIGHT - 0.08, 0.08), 0.03);
 }

@@ -38,17 +38,16 @@ fn build(values: &Values) -> Scene {
     stage.solid("posts", steel, |m| {
         for i in 0..layers {
             let (y, edge) = (gap * (i as f32 + 0.75), EDGE - 1.2 * i as f32 / layers as f32);
-            let below = if i == 0 { 0.0 } else { y - gap };
             for (x, z) in [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)] {
                 let inset = 0.5 * edge - 0.04;
-                m.at(Frame::IDENTITY.yaw(TURN * 0.02 * i as f32).shift(x * inset, below - 0.01, z * inset));
-                m.cylinder(0.016, y - below, 16);
+                m.at(Frame::IDENTITY.yaw(TURN * 0.02 * i as f32).shift(x * inset, 0.0, z * inset));
+                m.cylinder(0.016, y - 0.01, 16);
             }
         }
     });
     stage.finish(
-        camera([2.6, 3.1, 4.4], [0.0, 0.75, 0.1], 42.0, 0.1, 60.0),
-        light([-1.8, 6.0, -1.2], [0.0, 0.0, 0.0], 1.2, 1.2),
+        camera([2.5, 3.6, 4.4], [0.0, 0.68, 0.1], 40.0, 0.1, 60.0),
+        light([-1.7, 6.5, -1.0], [0.0, 0.0, 0.0], 1.2, 1.2),
     )
 }
 

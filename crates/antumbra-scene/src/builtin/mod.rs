@@ -8,9 +8,12 @@ mod spec;
 mod stage;
 
 mod basic;
+mod cage;
 mod fence;
 mod layers;
+mod plant;
 mod terrain;
+mod windmill;
 #[cfg(test)]
 mod tests;
 
@@ -75,5 +78,15 @@ pub fn build(spec: &str) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-static BUILTINS: [BuiltinInfo; 7] =
-    [basic::SQUARE, basic::DISK, basic::SPHERES, fence::FENCE, layers::LAYERS, terrain::BUMPY, terrain::GRID];
+static BUILTINS: [BuiltinInfo; 10] = [
+    basic::SQUARE,
+    basic::DISK,
+    basic::SPHERES,
+    fence::FENCE,
+    layers::LAYERS,
+    cage::CAGE,
+    terrain::BUMPY,
+    terrain::GRID,
+    windmill::WINDMILL,
+    plant::PLANT,
+];

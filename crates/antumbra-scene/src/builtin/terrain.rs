@@ -47,17 +47,17 @@ fn bumpy(values: &Values) -> Scene {
     });
     let on = |x: f32, z: f32, up: f32| Frame::at(x, hill(x, z) + up, z);
     stage.solid("stones", slate, |m| {
-        for (x, z, height, turn) in [(-1.3, -0.6, 1.3, 0.1), (-0.3, -1.5, 1.7, 0.35), (1.1, -1.9, 1.1, 0.62)] {
+        for (x, z, height, turn) in [(-1.9, -0.4, 1.0, 0.1), (-0.7, -1.5, 1.4, 0.35), (0.9, -2.3, 1.0, 0.62)] {
             m.at(on(x, z, -0.3).yaw(TURN * turn)).block(0.34, height + 0.3, 0.22);
         }
     });
     stage.solid("balls", clay, |m| {
-        m.at(on(0.9, 0.4, 0.3)).sphere(0.34, 96);
-        m.at(on(-0.5, 1.1, 0.9)).sphere(0.2, 96);
-        m.at(on(1.9, -0.6, 1.0).roll(0.4)).torus(0.36, 0.09, 96, 32);
+        m.at(on(0.1, 0.2, 0.28)).sphere(0.3, 96);
+        m.at(on(-0.9, 1.5, 0.6)).sphere(0.18, 96);
+        m.at(on(1.5, -0.5, 0.8).roll(0.9).pitch(0.5)).torus(0.34, 0.08, 96, 32);
     });
     stage.finish(
-        camera([1.2, 2.3, 5.6], [0.1, 0.2, 0.0], 42.0, 0.1, 60.0),
+        camera([0.9, 3.3, 6.0], [0.25, 0.1, -0.35], 40.0, 0.1, 60.0),
         light([-9.0, 4.2, -1.5], [0.0, 0.2, 0.0], 0.9, 0.9),
     )
 }
@@ -81,13 +81,13 @@ fn grid(values: &Values) -> Scene {
         m.at(Frame::at(0.0, 4.6, 0.0)).sphere(0.22, 32);
     });
     for i in 0..12 {
-        let z = -2.0 - 9.0 * i as f32;
+        let z = -1.0 - 9.0 * i as f32;
         stage.place(arch, Frame::at(0.4 * i as f32, 0.0, z));
         stage.place(pole, Frame::at(-4.2, 0.0, z + 3.5));
         stage.place(pole, Frame::at(5.0 + 0.6 * i as f32, 0.0, z - 1.0));
     }
     stage.finish(
-        camera([-1.6, 1.9, 10.0], [0.9, 1.5, -12.0], 45.0, 0.1, 500.0),
+        camera([-2.4, 2.3, 12.0], [1.3, 1.1, -12.0], 45.0, 0.1, 500.0),
         light([-46.0, 19.0, 22.0], [0.0, 0.0, -14.0], 3.0, 3.0),
     )
 }
