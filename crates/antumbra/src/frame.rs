@@ -1,0 +1,186 @@
+//! What every technique is given: view, light, casters, geometry buffer; and what it fills: visibility.
+
+use crate::casters::Casters;
+use crate::shader::HostStruct;
+use crate::{Error, Gpu, ShadowFrustum, gpu_struct};
+use antumbra_scene::{Camera, RectLight};
+use glam::{DMat4, DVec4, Mat3, Mat4, UVec2, Vec2, Vec3};
+use std::sync::Arc;
+
+/// Where the picture is seen from, as matrices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// View to clip space; reversed depth in [0, 1].
+    pub clip_from_view: Mat4,
+    /// World to view space: a rotation and a translation.
+    pub view_from_world: Mat4,
+}
+
+impl View {
+    /// The view of a camera on a picture of `width` x `height` pixels.
+    pub fn of_camera(camera: &Camera, size: [u32; 2]) -> View {
+        let aspect = size[0] as f32 / size[1] as f32;
+        View { clip_from_view: camera.clip_from_view(aspect), view_from_world: camera.view_from_world() }
+    }
+
+    /// World to clip space.
+    pub fn clip_from_world(&self) -> Mat4 {
+        (self.clip_from_view.as_dmat4() * self.view_from_world.as_dmat4()).as_mat4()
+    }
+
+    /// Position of the eye in world space.
+    pub fn eye(&self) -> Vec3 {
+        self.view_from_world.as_dmat4().inverse().w_axis.truncate().as_vec3()
+    }
+}
+
+gpu_struct! {
+    /// What the shaders know of a frame; see `shaders/frame.wesl`.
+    pub(crate) struct FrameUniform {
+        light_from_clip: Mat4,
+        light_from_world: Mat3,
+        /// Eye in light space.
+        eye_ls: Vec3,
+        /// Depth range of the map's frustum starts here, metres.
+        map_near: f32,
+        /// Half the light's edges, metres.
+        half_light: Vec2,
+        /// Half the opening of the map's frustum, as tangents.
+        tan_half: Vec2,
+        /// Pixels.
+        size: UVec2,
+        /// How far a reconstructed position may be off, metres.
+        position_error: f32,
+        /// The same for each metre of distance from the eye.
+        position_error_per_metre: f32,
+        /// How far a normal may be off, radians.
+        normal_error: f32,
+    }
+}
+
+/// The host's geometry buffer.
+#[derive(Clone, Debug)]
+pub struct GeometryInput {
+    /// Reversed depth in a depth format; 0 where there is nothing.
+    pub depth: wgpu::TextureView,
+    /// Geometric normals in world space, turned to the camera, in xyz of any float format.
+    pub normal: wgpu::TextureView,
+    /// How far a normal may be off by its format, in radians: [`normal_error`].
+    pub normal_error: f32,
+    /// Pixels.
+    pub size: [u32; 2],
+}
+
+/// The angle in radians by which rounding to a texture format may turn a normal.
+pub fn normal_error(format: wgpu::TextureFormat) -> f32 {
+    use wgpu::TextureFormat as F;
+    match format {
+        F::Rgba32Float => 2.4e-7,
+        F::Rgba16Float => 9.8e-4,
+        F::Rgba16Snorm => 6.1e-5,
+        F::Rgb10a2Unorm => 2.0e-3,
+        _ => 1.4e-2,
+    }
+}
+
+/// Everything about a frame. Kept from frame to frame; [`Frame::update`] moves camera and light.
+pub struct Frame {
+    /// Camera.
+    pub view: View,
+    /// Light.
+    pub light: RectLight,
+    /// What shadow maps from the light's centre look at.
+    pub frustum: ShadowFrustum,
+    /// Geometry.
+    pub casters: Arc<Casters>,
+    /// Receivers.
+    pub geometry: GeometryInput,
+    /// The result: `R32Float` with `STORAGE_BINDING`, the visible fraction of the light at each pixel.
+    pub visibility: wgpu::TextureView,
+    /// [`FrameUniform`], for shaders.
+    pub uniform: wgpu::Buffer,
+}
+
+impl Frame {
+    /// A frame that fills `visibility` (`R32Float`, storage binding, the geometry buffer's size).
+    pub fn new(
+        gpu: &Gpu,
+        casters: Arc<Casters>,
+        geometry: GeometryInput,
+        visibility: wgpu::TextureView,
+        view: View,
+        light: RectLight,
+    ) -> Result<Frame, Error> {
+        gpu.check_size("picture", geometry.size[0], geometry.size[1])?;
+        let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: <FrameUniform as encase::ShaderType>::min_size().get(),
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let frustum = ShadowFrustum::around(&light, &casters.bounds());
+        let frame = Frame { view, light, frustum, casters, geometry, visibility, uniform };
+        frame.write(gpu);
+        Ok(frame)
+    }
+
+    /// Moves camera and light. The new values count for all work submitted after this call.
+    pub fn update(&mut self, gpu: &Gpu, view: View, light: RectLight, frustum: ShadowFrustum) {
+        (self.view, self.light, self.frustum) = (view, light, frustum);
+        self.write(gpu);
+    }
+
+    fn write(&self, gpu: &Gpu) {
+        gpu.queue.write_buffer(&self.uniform, 0, &self.uniform_value().uniform_bytes());
+    }
+
+    fn uniform_value(&self) -> FrameUniform {
+        let light_from_world = light_from_world(&self.light);
+        let world_from_clip = (self.view.clip_from_view.as_dmat4() * self.view.view_from_world.as_dmat4()).inverse();
+        let eye = world_from_clip * DVec4::new(0.0, 0.0, 1.0, 0.0);
+        let eye_ls = light_from_world * (eye / eye.w);
+        let reach = self.light.center.abs().max_element().max((eye / eye.w).truncate().abs().max_element() as f32);
+        FrameUniform {
+            light_from_clip: (light_from_world * world_from_clip).as_mat4(),
+            light_from_world: Mat3::from_mat4(light_from_world.as_mat4()),
+            eye_ls: eye_ls.truncate().as_vec3(),
+            map_near: self.frustum.near,
+            half_light: self.light.size * 0.5,
+            tan_half: self.frustum.tan_half,
+            size: UVec2::from(self.geometry.size),
+            position_error: reach * ULP,
+            position_error_per_metre: 4.0 * ULP,
+            normal_error: self.geometry.normal_error,
+        }
+    }
+
+    /// World to the clip space of a map from the light's centre: `w` is the distance z along the light's normal and the
+    /// depth is `near / z`.
+    pub fn map_clip_from_world(&self) -> Mat4 {
+        let f = &self.frustum;
+        let clip_from_light = DMat4::from_cols(
+            DVec4::new(1.0 / f64::from(f.tan_half.x), 0.0, 0.0, 0.0),
+            // Row 0 of a texture is at the top of clip space; rows of the map go along +y of light space.
+            DVec4::new(0.0, -1.0 / f64::from(f.tan_half.y), 0.0, 0.0),
+            DVec4::new(0.0, 0.0, 0.0, 1.0),
+            DVec4::new(0.0, 0.0, f64::from(f.near), 0.0),
+        );
+        (clip_from_light * light_from_world(&self.light)).as_mat4()
+    }
+}
+
+/// A unit in the last place of a 32-bit float near 1, doubled for the rounding of the arithmetic after it.
+const ULP: f32 = 2.4e-7;
+
+/// World to light space in double precision: far from the origin the rounding of single precision would be visible.
+fn light_from_world(light: &RectLight) -> DMat4 {
+    let (right, up, forward) = light.basis();
+    let (right, up, forward) = (right.as_dvec3(), up.as_dvec3(), forward.as_dvec3());
+    let center = light.center.as_dvec3();
+    DMat4::from_cols(
+        DVec4::new(right.x, up.x, forward.x, 0.0),
+        DVec4::new(right.y, up.y, forward.y, 0.0),
+        DVec4::new(right.z, up.z, forward.z, 0.0),
+        DVec4::new(-right.dot(center), -up.dot(center), -forward.dot(center), 1.0),
+    )
+}

@@ -1,0 +1,189 @@
+//! The device that everything runs on: choice, capabilities, and the pipelines that are compiled once.
+
+use crate::pipeline::{ComputePipeline, PipelineCache, RenderPipeline, RenderTarget};
+use crate::shader::ShaderKey;
+use crate::{Error, resource::Texture};
+use std::sync::Arc;
+
+/// A `wgpu` device with what Antumbra needs to know of it. Cheap to clone.
+#[derive(Clone)]
+pub struct Gpu {
+    /// The device; the host's own, or one from [`Gpu::new`].
+    pub device: wgpu::Device,
+    /// Its queue.
+    pub queue: wgpu::Queue,
+    /// Name, kind and driver.
+    pub info: wgpu::AdapterInfo,
+    /// What the device can do beyond core WebGPU.
+    pub capabilities: Capabilities,
+    pipelines: Arc<PipelineCache>,
+}
+
+/// What an adapter offers beyond core WebGPU, and so which fallbacks are in use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Capabilities {
+    /// GPU times per pass. Without it passes have no milliseconds.
+    pub timestamps: bool,
+    /// Linear filtering of 32-bit float textures. Without it techniques interpolate in the shader.
+    pub float32_filtering: bool,
+    /// Blending into 32-bit float targets. Without it techniques accumulate in compute.
+    pub float32_blending: bool,
+    /// Rasterisation of every touched pixel. Without it triangles are enlarged in the vertex shader.
+    pub conservative_rasterization: bool,
+    /// Wave operations in compute. Without them workgroup memory is used.
+    pub subgroups: bool,
+    /// Largest side of a 2D texture, in texels.
+    pub max_texture_size: u32,
+}
+
+impl Capabilities {
+    fn of(features: wgpu::Features, limits: &wgpu::Limits) -> Self {
+        Capabilities {
+            timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
+            float32_filtering: features.contains(wgpu::Features::FLOAT32_FILTERABLE),
+            float32_blending: features.contains(wgpu::Features::FLOAT32_BLENDABLE),
+            conservative_rasterization: features.contains(wgpu::Features::CONSERVATIVE_RASTERIZATION),
+            subgroups: features.contains(wgpu::Features::SUBGROUP),
+            max_texture_size: limits.max_texture_dimension_2d,
+        }
+    }
+}
+
+/// Which adapter to take.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum AdapterChoice {
+    /// Discrete before integrated before software.
+    #[default]
+    Best,
+    /// The place in [`adapters`].
+    Index(usize),
+    /// The first whose name contains this text, whatever the case.
+    Name(String),
+}
+
+impl std::str::FromStr for AdapterChoice {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(text.parse().map_or_else(|_| AdapterChoice::Name(text.to_owned()), AdapterChoice::Index))
+    }
+}
+
+/// The optional features that are asked for where the adapter has them.
+const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
+    .union(wgpu::Features::FLOAT32_FILTERABLE)
+    .union(wgpu::Features::FLOAT32_BLENDABLE)
+    .union(wgpu::Features::CONSERVATIVE_RASTERIZATION)
+    .union(wgpu::Features::SUBGROUP);
+
+fn instance() -> wgpu::Instance {
+    wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
+}
+
+/// All adapters, best first: the order that [`AdapterChoice::Index`] counts in.
+pub async fn adapters() -> Vec<wgpu::Adapter> {
+    let mut list = instance().enumerate_adapters(wgpu::Backends::all()).await;
+    list.sort_by_key(|a| rank(&a.get_info()));
+    list
+}
+
+/// Smaller is better: the kind of device first, then the native API that serves it best.
+fn rank(info: &wgpu::AdapterInfo) -> (u32, u32) {
+    let kind = match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    };
+    (kind, u32::from(info.backend == wgpu::Backend::Gl))
+}
+
+impl Gpu {
+    /// Opens an adapter of this machine.
+    pub async fn new(choice: &AdapterChoice) -> Result<Gpu, Error> {
+        let mut list = adapters().await;
+        let names: Vec<String> = list.iter().map(|a| a.get_info().name).collect();
+        let index = match choice {
+            AdapterChoice::Best => 0,
+            AdapterChoice::Index(i) => *i,
+            AdapterChoice::Name(n) => names
+                .iter()
+                .position(|name| name.to_lowercase().contains(&n.to_lowercase()))
+                .ok_or_else(|| Error::UnknownAdapter { asked: n.clone(), known: names.clone() })?,
+        };
+        if list.is_empty() {
+            return Err(Error::NoAdapter);
+        }
+        if index >= list.len() {
+            return Err(Error::UnknownAdapter { asked: index.to_string(), known: names });
+        }
+        let adapter = list.swap_remove(index);
+        let (device, queue) = adapter
+            .request_device(&wgpu::DeviceDescriptor {
+                label: Some("antumbra"),
+                required_features: adapter.features() & WANTED,
+                required_limits: adapter.limits(),
+                ..Default::default()
+            })
+            .await
+            .map_err(|e| Error::Device { adapter: adapter.get_info().name, message: e.to_string() })?;
+        Ok(Gpu::from_host(device, queue))
+    }
+
+    /// Takes the host's device. Features that it was not made with are replaced by their fallbacks.
+    pub fn from_host(device: wgpu::Device, queue: wgpu::Queue) -> Gpu {
+        let capabilities = Capabilities::of(device.features(), &device.limits());
+        Gpu { info: device.adapter_info(), capabilities, pipelines: Arc::default(), device, queue }
+    }
+
+    /// True if the adapter computes on the CPU: its absolute times say nothing about a GPU.
+    pub fn is_software(&self) -> bool {
+        self.info.device_type == wgpu::DeviceType::Cpu
+    }
+
+    /// A compute pipeline, compiled at the first call.
+    pub fn compute_pipeline(&self, key: &ShaderKey, entry: &'static str) -> Result<Arc<ComputePipeline>, Error> {
+        self.pipelines.compute(&self.device, key, entry)
+    }
+
+    /// A render pipeline, compiled at the first call. Entry points are `vertex` and `fragment`.
+    pub fn render_pipeline(&self, key: &ShaderKey, target: &RenderTarget) -> Result<Arc<RenderPipeline>, Error> {
+        self.pipelines.render(&self.device, key, target)
+    }
+
+    /// Waits until all submitted work is done.
+    pub fn wait(&self) -> Result<(), Error> {
+        self.device.poll(wgpu::PollType::wait_indefinitely()).map(|_| ()).map_err(|e| Error::Lost(e.to_string()))
+    }
+
+    /// Runs `work` with GPU errors caught and returned instead of raised in a callback.
+    pub async fn checked<T>(&self, work: impl FnOnce() -> Result<T, Error>) -> Result<T, Error> {
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let result = work();
+        let invalid = validation.pop().await;
+        let exhausted = memory.pop().await;
+        if let Some(e) = exhausted {
+            return Err(Error::OutOfMemory(e.to_string()));
+        }
+        if let Some(e) = invalid {
+            return Err(Error::Validation(e.to_string()));
+        }
+        result
+    }
+
+    /// Refuses a picture or map side that the device cannot hold.
+    pub fn check_size(&self, what: &'static str, width: u32, height: u32) -> Result<(), Error> {
+        let max = self.capabilities.max_texture_size;
+        if width == 0 || height == 0 || width > max || height > max {
+            return Err(Error::Size { what, width, height, max });
+        }
+        Ok(())
+    }
+
+    /// Copies the first mip level of a texture to the CPU, rows tightly packed.
+    pub async fn read_texture(&self, texture: &Texture) -> Result<Vec<u8>, Error> {
+        crate::resource::read_texture(self, &texture.texture).await
+    }
+}

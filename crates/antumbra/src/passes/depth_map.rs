@@ -1,0 +1,83 @@
+//! The shadow map: depth of the nearest caster seen from a point of the light.
+
+use crate::casters::{BatchLayout, Casters};
+use crate::passes::culling::{Culling, MapView};
+use crate::pipeline::RenderTarget;
+use crate::recorder::{Recorder, depth_target};
+use crate::resource::{Texture, uniform};
+use crate::shader::{HostStruct, ShaderKey};
+use crate::technique::Memory;
+use crate::{Error, Gpu, bindings};
+use glam::Mat4;
+
+/// A square map of `near / z`, z being the linear distance along the light's normal and `near` that of the frustum
+/// [Williams 1978]. The reversed depth with its far plane at infinity is the inverse distance itself: 0 is infinitely
+/// far, planes are affine in the map's coordinates, and no second texture is needed for linear depth.
+pub struct DepthMap {
+    /// `Depth32Float`, `size` x `size`.
+    pub texture: Texture,
+    size: u32,
+    view: wgpu::Buffer,
+    culling: Culling,
+}
+
+impl DepthMap {
+    /// An empty map of `size` texels a side.
+    pub fn new(gpu: &Gpu, size: u32, casters: &Casters) -> Result<DepthMap, Error> {
+        gpu.check_size("shadow map", size, size)?;
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC;
+        Ok(DepthMap {
+            texture: Texture::new(gpu, "depth map", [size; 2], 1, wgpu::TextureFormat::Depth32Float, usage),
+            size,
+            view: uniform(gpu, "map view", &MapView::new(Mat4::IDENTITY)),
+            culling: Culling::new(gpu, casters),
+        })
+    }
+
+    /// Makes a map in `slot` unless one of this size for these casters is there.
+    pub fn ensure<'a>(
+        slot: &'a mut Option<DepthMap>,
+        gpu: &Gpu,
+        size: u32,
+        casters: &Casters,
+    ) -> Result<&'a DepthMap, Error> {
+        if !slot.as_ref().is_some_and(|m| m.size == size && m.culling.fits(casters)) {
+            *slot = Some(DepthMap::new(gpu, size, casters)?);
+        }
+        Ok(slot.as_ref().expect("just made"))
+    }
+
+    /// Draws the casters that `clip_from_world` holds.
+    pub fn record(&self, recorder: &mut Recorder, casters: &Casters, clip_from_world: Mat4) -> Result<(), Error> {
+        let view = MapView::new(clip_from_world);
+        recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
+        self.culling.record(recorder, "cluster culling", casters, &self.view)?;
+        let target = RenderTarget { colors: Vec::new(), depth: Some(wgpu::CompareFunction::Greater) };
+        let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>();
+        let opaque = recorder.gpu.render_pipeline(&key, &target)?;
+        let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
+        recorder.render_pass("depth map", &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
+            for (i, batch) in casters.batches.iter().enumerate() {
+                let pipeline = if batch.masked { &masked } else { &opaque };
+                pass.set_pipeline(&pipeline.pipeline);
+                let set = bindings! { map_view: &self.view, visible: &self.culling.visible };
+                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, set), &[]);
+                pass.set_bind_group(1, &pipeline.bind_group(gpu, 1, &batch.bindings(casters)), &[]);
+                pass.draw_indirect(&self.culling.draws, Culling::draw_offset(i));
+            }
+        });
+        Ok(())
+    }
+
+    /// What was culled.
+    pub fn culling(&self) -> &Culling {
+        &self.culling
+    }
+
+    /// GPU memory by pass.
+    pub fn memory(&self) -> [Memory; 2] {
+        [Memory::new("cluster culling", self.culling.bytes()), Memory::new("depth map", self.texture.bytes())]
+    }
+}

@@ -1,0 +1,9 @@
+//! What several techniques share.
+
+pub mod classify;
+pub mod cluster_bounds;
+pub mod culling;
+pub mod depth_map;
+pub mod depth_pyramid;
+pub mod geometry_buffer;
+pub mod picture;

@@ -1,0 +1,200 @@
+//! Pipelines that are compiled once a device, and bind groups made by the names in the shader.
+
+use crate::shader::{Bindings, Program, ShaderKey};
+use crate::{Error, Gpu};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex};
+
+/// A name in the shader and what stands behind it.
+pub type Binding<'a> = (&'static str, wgpu::BindingResource<'a>);
+
+/// What can stand behind a name in a shader.
+pub trait Bindable {
+    /// As `wgpu` wants it.
+    fn resource(&self) -> wgpu::BindingResource<'_>;
+}
+
+impl Bindable for wgpu::Buffer {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        self.as_entire_binding()
+    }
+}
+impl Bindable for wgpu::TextureView {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::TextureView(self)
+    }
+}
+impl Bindable for wgpu::Sampler {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Sampler(self)
+    }
+}
+impl Bindable for crate::resource::Texture {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        self.view.resource()
+    }
+}
+
+/// `bindings! { depth_map: &map, frame: &uniform }`: resources under their names in the shader.
+#[macro_export]
+macro_rules! bindings {
+    ($($name:ident : $value:expr),* $(,)?) => {
+        &[$((stringify!($name), $crate::pipeline::Bindable::resource($value))),*]
+    };
+}
+
+/// A compute shader, ready to be dispatched.
+pub struct ComputePipeline {
+    /// The pipeline.
+    pub pipeline: wgpu::ComputePipeline,
+    /// Threads a workgroup.
+    pub workgroup: [u32; 3],
+    slots: Bindings,
+    name: &'static str,
+}
+
+/// A vertex shader with or without a fragment shader.
+pub struct RenderPipeline {
+    /// The pipeline.
+    pub pipeline: wgpu::RenderPipeline,
+    slots: Bindings,
+    name: &'static str,
+}
+
+/// What a render pipeline writes.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub struct RenderTarget {
+    /// Formats of the colour targets.
+    pub colors: Vec<wgpu::TextureFormat>,
+    /// A `Depth32Float` target with this comparison, if any.
+    pub depth: Option<wgpu::CompareFunction>,
+}
+
+impl ComputePipeline {
+    /// The resources of one group. Names that this variant does not use are passed over, missing ones are a bug.
+    pub fn bind_group(&self, gpu: &Gpu, group: u32, bindings: &[Binding]) -> wgpu::BindGroup {
+        bind_group(gpu, self.name, &self.pipeline.get_bind_group_layout(group), &self.slots, group, bindings)
+    }
+}
+
+impl RenderPipeline {
+    /// The resources of one group. Names that this variant does not use are passed over, missing ones are a bug.
+    pub fn bind_group(&self, gpu: &Gpu, group: u32, bindings: &[Binding]) -> wgpu::BindGroup {
+        bind_group(gpu, self.name, &self.pipeline.get_bind_group_layout(group), &self.slots, group, bindings)
+    }
+}
+
+fn bind_group(
+    gpu: &Gpu,
+    name: &'static str,
+    layout: &wgpu::BindGroupLayout,
+    slots: &Bindings,
+    group: u32,
+    bindings: &[Binding],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = slots
+        .iter()
+        .filter(|(_, slot)| slot.0 == group)
+        .map(|(variable, &(_, binding))| {
+            let found = bindings.iter().find(|(name, _)| name == variable);
+            let (_, resource) = found.unwrap_or_else(|| panic!("{name}: nothing is bound to `{variable}`"));
+            wgpu::BindGroupEntry { binding, resource: resource.clone() }
+        })
+        .collect();
+    gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(name), layout, entries: &entries })
+}
+
+type ComputeKey = (ShaderKey, &'static str);
+type RenderKey = (ShaderKey, RenderTarget);
+
+/// All pipelines of a device.
+#[derive(Default)]
+pub(crate) struct PipelineCache {
+    compute: Mutex<HashMap<ComputeKey, Arc<ComputePipeline>>>,
+    render: Mutex<HashMap<RenderKey, Arc<RenderPipeline>>>,
+}
+
+impl PipelineCache {
+    pub(crate) fn compute(
+        &self,
+        device: &wgpu::Device,
+        key: &ShaderKey,
+        entry: &'static str,
+    ) -> Result<Arc<ComputePipeline>, Error> {
+        let mut cache = self.compute.lock().expect("no panic while compiling");
+        if let Some(found) = cache.get(&(key.clone(), entry)) {
+            return Ok(found.clone());
+        }
+        let program = Program::compose(key)?;
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(key.module),
+            layout: None,
+            module: &shader_module(device, key, &program),
+            entry_point: Some(entry),
+            compilation_options: Default::default(),
+            cache: None,
+        });
+        let made = Arc::new(ComputePipeline {
+            pipeline,
+            workgroup: program.workgroup_size(entry),
+            slots: program.bindings(&[entry]),
+            name: key.module,
+        });
+        cache.insert((key.clone(), entry), made.clone());
+        Ok(made)
+    }
+
+    pub(crate) fn render(
+        &self,
+        device: &wgpu::Device,
+        key: &ShaderKey,
+        target: &RenderTarget,
+    ) -> Result<Arc<RenderPipeline>, Error> {
+        let mut cache = self.render.lock().expect("no panic while compiling");
+        if let Some(found) = cache.get(&(key.clone(), target.clone())) {
+            return Ok(found.clone());
+        }
+        let program = Program::compose(key)?;
+        let module = shader_module(device, key, &program);
+        let has_fragment = program.entry_points().any(|e| e == "fragment");
+        let colors: Vec<_> = target.colors.iter().map(|&format| Some(format.into())).collect();
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(key.module),
+            layout: None,
+            vertex: wgpu::VertexState {
+                module: &module,
+                entry_point: Some("vertex"),
+                compilation_options: Default::default(),
+                buffers: &[],
+            },
+            primitive: Default::default(),
+            depth_stencil: target.depth.map(|compare| wgpu::DepthStencilState {
+                format: wgpu::TextureFormat::Depth32Float,
+                depth_write_enabled: Some(true),
+                depth_compare: Some(compare),
+                stencil: Default::default(),
+                bias: Default::default(),
+            }),
+            multisample: Default::default(),
+            fragment: has_fragment.then_some(wgpu::FragmentState {
+                module: &module,
+                entry_point: Some("fragment"),
+                compilation_options: Default::default(),
+                targets: &colors,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let entries: &[&str] = if has_fragment { &["vertex", "fragment"] } else { &["vertex"] };
+        let made = Arc::new(RenderPipeline { pipeline, slots: program.bindings(entries), name: key.module });
+        cache.insert((key.clone(), target.clone()), made.clone());
+        Ok(made)
+    }
+}
+
+fn shader_module(device: &wgpu::Device, key: &ShaderKey, program: &Program) -> wgpu::ShaderModule {
+    device.create_shader_module(wgpu::ShaderModuleDescriptor {
+        label: Some(key.module),
+        source: wgpu::ShaderSource::Wgsl(program.wgsl.as_str().into()),
+    })
+}

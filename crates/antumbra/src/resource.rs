@@ -1,0 +1,130 @@
+//! Textures and buffers that know their size in bytes, and reading them back.
+
+use crate::{Error, Gpu};
+use wgpu::util::DeviceExt;
+
+/// A 2D texture (or array) with a view of all of it.
+#[derive(Clone, Debug)]
+pub struct Texture {
+    /// The texture.
+    pub texture: wgpu::Texture,
+    /// Everything in it.
+    pub view: wgpu::TextureView,
+}
+
+impl Texture {
+    /// A texture of one layer; `mips` levels.
+    pub fn new(
+        gpu: &Gpu,
+        label: &str,
+        size: [u32; 2],
+        mips: u32,
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> Texture {
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: mips,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        });
+        Texture { view: texture.create_view(&Default::default()), texture }
+    }
+
+    /// A view of one mip level.
+    pub fn mip(&self, level: u32) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            base_mip_level: level,
+            mip_level_count: Some(1),
+            ..Default::default()
+        })
+    }
+
+    /// GPU memory of all levels and layers, in bytes.
+    pub fn bytes(&self) -> u64 {
+        let t = &self.texture;
+        let texel = u64::from(t.format().block_copy_size(None).unwrap_or(4));
+        (0..t.mip_level_count())
+            .map(|m| u64::from((t.width() >> m).max(1)) * u64::from((t.height() >> m).max(1)))
+            .sum::<u64>()
+            * texel
+            * u64::from(t.depth_or_array_layers())
+            * u64::from(t.sample_count())
+    }
+}
+
+/// A buffer that holds `bytes` from the start.
+pub fn buffer_of(gpu: &Gpu, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents: bytes, usage })
+}
+
+/// A zeroed storage buffer of `size` bytes that can also be an indirect argument and be copied.
+pub fn storage_buffer(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        size: size.max(16),
+        usage: wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::INDIRECT
+            | wgpu::BufferUsages::COPY_DST
+            | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    })
+}
+
+/// A uniform buffer with the bytes of a host struct.
+pub fn uniform<T: crate::shader::HostStruct>(gpu: &Gpu, label: &str, value: &T) -> wgpu::Buffer {
+    buffer_of(gpu, label, &value.uniform_bytes(), wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST)
+}
+
+/// Reads a buffer back; it needs `COPY_SRC`.
+pub async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
+    let staging = staging(gpu, buffer.size());
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, buffer.size());
+    gpu.queue.submit([encoder.finish()]);
+    map(gpu, &staging).await
+}
+
+/// Reads the first mip level of the first layer; rows tightly packed.
+pub async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, Error> {
+    let texel = texture.format().block_copy_size(None).expect("a colour format");
+    let row = texture.width() * texel;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let staging = staging(gpu, u64::from(padded) * u64::from(texture.height()));
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        texture.as_image_copy(),
+        wgpu::TexelCopyBufferInfo {
+            buffer: &staging,
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+        },
+        wgpu::Extent3d { width: texture.width(), height: texture.height(), depth_or_array_layers: 1 },
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let bytes = map(gpu, &staging).await?;
+    Ok(bytes.chunks_exact(padded as usize).flat_map(|r| &r[..row as usize]).copied().collect())
+}
+
+fn staging(gpu: &Gpu, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    })
+}
+
+async fn map(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
+    let (send, receive) = std::sync::mpsc::channel();
+    staging.map_async(wgpu::MapMode::Read, .., move |result| {
+        // The receiver lives until the message has come.
+        let _ = send.send(result);
+    });
+    gpu.wait()?;
+    receive.recv().map_err(|e| Error::Lost(e.to_string()))?.map_err(|e| Error::Lost(e.to_string()))?;
+    Ok(staging.get_mapped_range(..).map_err(|e| Error::Lost(e.to_string()))?.to_vec())
+}

@@ -1,0 +1,249 @@
+//! Drawing a whole [`Scene`]: geometry buffer, technique, picture. What a host does, for programs that have no renderer.
+
+use crate::casters::{BatchLayout, CastersBuilder, items_of};
+use crate::passes::{geometry_buffer::GeometryBuffer, picture::Picture};
+use crate::resource::{Texture, buffer_of};
+use crate::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, ShadowFrustum, Technique, View, frame};
+use antumbra_scene::{Instance, Material, Mesh, Scene, Wrap};
+use glam::{Mat4, Vec3};
+use std::sync::Arc;
+
+/// A scene on the GPU with everything that a picture of it needs.
+pub struct SceneRenderer {
+    /// The picture's surfaces.
+    pub geometry: GeometryBuffer,
+    /// What techniques are given.
+    pub frame: Frame,
+    /// `R32Float`: what techniques fill.
+    pub visibility: Texture,
+    picture: Picture,
+}
+
+impl SceneRenderer {
+    /// Uploads a scene and makes the textures of a picture of `size` pixels.
+    pub fn new(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> Result<SceneRenderer, Error> {
+        let geometry = GeometryBuffer::new(gpu, size)?;
+        let usage = wgpu::TextureUsages::STORAGE_BINDING
+            | wgpu::TextureUsages::TEXTURE_BINDING
+            | wgpu::TextureUsages::COPY_SRC
+            | wgpu::TextureUsages::COPY_DST;
+        let visibility = Texture::new(gpu, "visibility", size, 1, wgpu::TextureFormat::R32Float, usage);
+        let input = GeometryInput {
+            depth: geometry.depth.view.clone(),
+            normal: geometry.normal.view.clone(),
+            normal_error: frame::normal_error(geometry.normal.texture.format()),
+            size,
+        };
+        let casters = Arc::new(upload(gpu, scene)?);
+        let view = View::of_camera(&scene.camera, size);
+        let mut frame = Frame::new(gpu, casters, input, visibility.view.clone(), view, scene.light)?;
+        let frustum = ShadowFrustum::fit(scene, &view);
+        frame.update(gpu, view, scene.light, frustum);
+        Ok(SceneRenderer { geometry, frame, picture: Picture::new(gpu, size), visibility })
+    }
+
+    /// Records the geometry buffer: the host's part.
+    pub fn record_geometry(&self, recorder: &mut Recorder) -> Result<(), Error> {
+        self.geometry.record(recorder, &self.frame.casters, &self.frame.view)
+    }
+
+    /// Records a technique.
+    pub fn record_shadow(&self, technique: &mut dyn Technique, recorder: &mut Recorder) -> Result<(), Error> {
+        technique.record(&self.frame, recorder)
+    }
+
+    /// Shades with what is in the visibility texture and returns 8-bit sRGB RGBA, row 0 on top.
+    pub async fn picture(&self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.picture.record(&mut Recorder::new(gpu, &mut encoder), &self.frame, &self.geometry)?;
+        gpu.queue.submit([encoder.finish()]);
+        gpu.read_texture(&self.picture.texture).await
+    }
+
+    /// The visibility of each pixel, row 0 on top.
+    pub async fn read_visibility(&self, gpu: &Gpu) -> Result<Vec<f32>, Error> {
+        Ok(bytemuck::pod_collect_to_vec(&gpu.read_texture(&self.visibility).await?))
+    }
+
+    /// Replaces the visibility, so that a picture can be made with the truth.
+    pub fn write_visibility(&self, gpu: &Gpu, values: &[f32]) {
+        let t = &self.visibility.texture;
+        let layout =
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(t.width() * 4), rows_per_image: None };
+        gpu.queue.write_texture(t.as_image_copy(), bytemuck::cast_slice(values), layout, t.size());
+    }
+}
+
+/// Puts a scene's triangles on the GPU: all plain meshes in one batch, one batch more for each texture.
+pub fn upload(gpu: &Gpu, scene: &Scene) -> Result<Casters, Error> {
+    let mut builder = CastersBuilder::new(gpu);
+    let mut groups: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
+    for (index, mesh) in scene.meshes.iter().enumerate() {
+        let key = scene.materials[mesh.material].texture.as_ref().map(|_| mesh.material);
+        match groups.iter_mut().find(|(k, _)| *k == key) {
+            Some((_, meshes)) => meshes.push(index),
+            None => groups.push((key, vec![index])),
+        }
+    }
+    for (material, meshes) in &groups {
+        for chunk in split(gpu, scene, meshes) {
+            push_batch(gpu, &mut builder, scene, material.map(|m| &scene.materials[m]), chunk);
+        }
+    }
+    builder.bounds = scene.bounds();
+    builder.finish()
+}
+
+/// Cuts a list of meshes where their vertices or indices would outgrow a storage binding.
+fn split<'a>(gpu: &Gpu, scene: &Scene, meshes: &'a [usize]) -> Vec<&'a [usize]> {
+    let limit = gpu.device.limits().max_storage_buffer_binding_size as usize;
+    let (mut chunks, mut start, mut vertices, mut indices) = (Vec::new(), 0, 0, 0);
+    for (at, &m) in meshes.iter().enumerate() {
+        let mesh = &scene.meshes[m];
+        let grown = (vertices + mesh.positions.len() * 20, indices + mesh.indices.len() * 4);
+        if at > start && grown.0.max(grown.1) > limit {
+            chunks.push(&meshes[start..at]);
+            (start, vertices, indices) = (at, mesh.positions.len() * 20, mesh.indices.len() * 4);
+        } else {
+            (vertices, indices) = grown;
+        }
+    }
+    chunks.push(&meshes[start..]);
+    chunks
+}
+
+fn push_batch(gpu: &Gpu, builder: &mut CastersBuilder, scene: &Scene, textured: Option<&Material>, meshes: &[usize]) {
+    let (mut words, mut indices, mut transforms, mut items) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let stride = if textured.is_some() { 5 } else { 3 };
+    for &m in meshes {
+        let mesh = &scene.meshes[m];
+        let base = (words.len() / stride) as u32;
+        let first = (indices.len() / 3) as u32;
+        push_vertices(&mut words, mesh, textured.is_some());
+        indices.extend(clustered(mesh).into_iter().flatten().map(|i| i + base));
+        let color = srgb(scene.materials[mesh.material].base_color.truncate());
+        for receiver_only in [false, true] {
+            let placed = |i: &&Instance| i.mesh == m && i.receiver_only == receiver_only;
+            let from = transforms.len() as u32;
+            transforms.extend(scene.instances.iter().filter(placed).map(|i| Mat4::from(i.world_from_object)));
+            let range = from..transforms.len() as u32;
+            items.extend(items_of(first, mesh.triangle_count() as u32, range, receiver_only, color));
+        }
+    }
+    let layout = BatchLayout {
+        vertex_offset: 0,
+        vertex_stride: stride as u32,
+        uv_offset: 3,
+        index_kind: 2,
+        index_offset: 0,
+        transform_offset: 0,
+        transform_stride: 16,
+        first_item: 0,
+        item_count: 0,
+        alpha_cutoff: textured.and_then(|m| m.alpha_cutoff).unwrap_or(0.0),
+        alpha: textured.map_or(1.0, |m| m.base_color.w),
+        textured: u32::from(textured.is_some()),
+    };
+    let storage = wgpu::BufferUsages::STORAGE;
+    let texture = textured.and_then(|m| m.texture.as_ref()).map(|t| upload_texture(gpu, t));
+    builder.push(
+        layout,
+        [
+            buffer_of(gpu, "vertices", bytemuck::cast_slice(&words), storage),
+            buffer_of(gpu, "indices", bytemuck::cast_slice(&indices), storage),
+            buffer_of(gpu, "transforms", bytemuck::cast_slice(&transforms), storage),
+        ],
+        texture.as_ref().map(|(view, sampler)| (view, sampler)),
+        items.into_iter(),
+    );
+}
+
+fn push_vertices(words: &mut Vec<f32>, mesh: &Mesh, with_uv: bool) {
+    for (i, p) in mesh.positions.iter().enumerate() {
+        words.extend(p.to_array());
+        if with_uv {
+            words.extend(mesh.uvs.get(i).copied().unwrap_or_default().to_array());
+        }
+    }
+}
+
+/// A mesh's triangles along a space-filling curve, so that every run of them is a compact cluster.
+fn clustered(mesh: &Mesh) -> Vec<[u32; 3]> {
+    let bounds = mesh.bounds();
+    let scale = Vec3::splat(1023.0) / bounds.size().max(Vec3::splat(1e-20));
+    let spread = |v: f32| (0..10).fold(0u32, |bits, i| bits | ((v as u32 >> i & 1) << (3 * i)));
+    let mut keyed: Vec<(u32, [u32; 3])> = mesh
+        .indices
+        .chunks_exact(3)
+        .map(|t| {
+            let center = t.iter().map(|&i| mesh.positions[i as usize]).sum::<Vec3>() / 3.0;
+            let cell = (center - bounds.min) * scale;
+            (spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2, [t[0], t[1], t[2]])
+        })
+        .collect();
+    keyed.sort_by_key(|(key, _)| *key);
+    keyed.into_iter().map(|(_, t)| t).collect()
+}
+
+fn srgb(linear: Vec3) -> [u8; 4] {
+    let encode = |c: f32| {
+        let c = c.clamp(0.0, 1.0);
+        let s = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
+        (s * 255.0 + 0.5) as u8
+    };
+    [encode(linear.x), encode(linear.y), encode(linear.z), 255]
+}
+
+/// A texture with all its mip levels, filtered on the CPU, and its sampler.
+fn upload_texture(gpu: &Gpu, source: &antumbra_scene::Texture) -> (wgpu::TextureView, wgpu::Sampler) {
+    let mips = 32 - source.width.max(source.height).leading_zeros();
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let size = [source.width, source.height];
+    let texture = Texture::new(gpu, "base colour", size, mips, wgpu::TextureFormat::Rgba8UnormSrgb, usage);
+    let (mut level, mut width, mut height) = (source.rgba.clone(), source.width, source.height);
+    for mip in 0..mips {
+        gpu.queue.write_texture(
+            wgpu::TexelCopyTextureInfo { mip_level: mip, ..texture.texture.as_image_copy() },
+            &level,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(width * 4), rows_per_image: None },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        (level, width, height) = halved(&level, width, height);
+    }
+    let address = |wrap| match wrap {
+        Wrap::Repeat => wgpu::AddressMode::Repeat,
+        Wrap::Mirror => wgpu::AddressMode::MirrorRepeat,
+        Wrap::Clamp => wgpu::AddressMode::ClampToEdge,
+    };
+    let filter = if source.nearest { wgpu::FilterMode::Nearest } else { wgpu::FilterMode::Linear };
+    let sampler = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("base colour"),
+        address_mode_u: address(source.wrap[0]),
+        address_mode_v: address(source.wrap[1]),
+        mag_filter: filter,
+        min_filter: filter,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        ..Default::default()
+    });
+    (texture.view, sampler)
+}
+
+/// The next mip level: each texel the mean of up to four.
+fn halved(rgba: &[u8], width: u32, height: u32) -> (Vec<u8>, u32, u32) {
+    let (w, h) = ((width / 2).max(1), (height / 2).max(1));
+    let at =
+        |x: u32, y: u32, c: u32| u32::from(rgba[((y.min(height - 1) * width + x.min(width - 1)) * 4 + c) as usize]);
+    let mut out = Vec::with_capacity((w * h * 4) as usize);
+    for y in 0..h {
+        for x in 0..w {
+            for c in 0..4 {
+                let sum = at(2 * x, 2 * y, c)
+                    + at(2 * x + 1, 2 * y, c)
+                    + at(2 * x, 2 * y + 1, c)
+                    + at(2 * x + 1, 2 * y + 1, c);
+                out.push(((sum + 2) / 4) as u8);
+            }
+        }
+    }
+    (out, w, h)
+}

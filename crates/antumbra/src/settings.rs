@@ -1,0 +1,228 @@
+//! Settings of techniques: declared once, with default, range, unit and help, and set by a SPEC such as
+//! `pcf:map=1024,kernel=5`.
+
+use serde::{Serialize, de::DeserializeOwned};
+use serde_json::{Map, Value};
+
+/// One setting of a technique.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Setting {
+    /// Key in a SPEC.
+    pub key: &'static str,
+    /// What it does, with its unit.
+    pub help: &'static str,
+    /// What values it takes.
+    #[serde(flatten)]
+    pub kind: Kind,
+}
+
+/// The values of a setting.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "type", rename_all = "lowercase")]
+pub enum Kind {
+    /// Whole numbers.
+    Integer {
+        /// Smallest.
+        min: u32,
+        /// Largest.
+        max: u32,
+    },
+    /// Real numbers.
+    Number {
+        /// Smallest.
+        min: f32,
+        /// Largest.
+        max: f32,
+    },
+    /// `true` or `false`.
+    Toggle,
+    /// One of these words.
+    Choice {
+        /// The words.
+        options: &'static [&'static str],
+    },
+}
+
+/// A settings struct made by [`settings!`](crate::settings!).
+pub trait Settings: Serialize + DeserializeOwned + Default {
+    /// Its keys, in the order of declaration.
+    const FIELDS: &'static [Setting];
+}
+
+/// Declares a settings struct: `key: type = default, kind;` with the doc comment as help.
+#[macro_export]
+macro_rules! settings {
+    ($(#[$meta:meta])* $vis:vis struct $name:ident { $(#[doc = $help:literal] $key:ident : $type:ty = $default:expr, $kind:expr;)* }) => {
+        $(#[$meta])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(default, deny_unknown_fields)]
+        $vis struct $name { $(#[doc = $help] pub $key: $type),* }
+
+        impl Default for $name {
+            fn default() -> Self {
+                $name { $($key: $default),* }
+            }
+        }
+
+        impl $crate::settings::Settings for $name {
+            const FIELDS: &'static [$crate::settings::Setting] =
+                &[$($crate::settings::Setting { key: stringify!($key), help: $help.trim_ascii(), kind: $kind }),*];
+        }
+    };
+}
+
+/// Declares an enum whose variants are words in a SPEC, with the list of words as `OPTIONS`.
+#[macro_export]
+macro_rules! choices {
+    ($(#[$meta:meta])* $vis:vis enum $name:ident { $($(#[$variant_meta:meta])* $variant:ident = $word:literal),* $(,)? }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize, serde::Deserialize)]
+        $vis enum $name { $($(#[$variant_meta])* #[serde(rename = $word)] $variant),* }
+
+        impl $name {
+            /// The words that name the variants.
+            pub const OPTIONS: &'static [&'static str] = &[$($word),*];
+        }
+    };
+}
+
+/// A SPEC that cannot be read.
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub enum SpecError {
+    /// No such technique.
+    #[error("unknown technique `{asked}`{}; `antumbra techniques` lists them", did_you_mean(.nearest))]
+    UnknownTechnique {
+        /// As given.
+        asked: String,
+        /// The most similar name.
+        nearest: Option<&'static str>,
+    },
+    /// No such setting.
+    #[error("technique `{technique}` has no setting `{key}`{}; its settings are: {}", did_you_mean(.nearest), .known.join(", "))]
+    UnknownKey {
+        /// The technique.
+        technique: String,
+        /// As given.
+        key: String,
+        /// The most similar key.
+        nearest: Option<&'static str>,
+        /// All keys.
+        known: Vec<&'static str>,
+    },
+    /// A key given twice.
+    #[error("technique `{technique}`: `{key}` is set twice")]
+    Twice {
+        /// The technique.
+        technique: String,
+        /// The key.
+        key: String,
+    },
+    /// Not `key=value`.
+    #[error("technique `{technique}`: `{part}` is not of the form key=value")]
+    Form {
+        /// The technique.
+        technique: String,
+        /// As given.
+        part: String,
+    },
+    /// A value that the setting does not take.
+    #[error("technique `{technique}`: `{key}={value}`: {expected}")]
+    Value {
+        /// The technique.
+        technique: String,
+        /// The key.
+        key: String,
+        /// As given.
+        value: String,
+        /// What it takes.
+        expected: String,
+    },
+}
+
+fn did_you_mean(nearest: &Option<&'static str>) -> String {
+    nearest.map_or(String::new(), |n| format!(" (did you mean `{n}`?)"))
+}
+
+/// The name among `names` that is most like `asked`, if any is alike at all.
+pub fn nearest(asked: &str, names: impl Iterator<Item = &'static str>) -> Option<&'static str> {
+    names
+        .map(|n| (strsim::jaro_winkler(&asked.to_lowercase(), n), n))
+        .filter(|(likeness, _)| *likeness > 0.6)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, n)| n)
+}
+
+/// Reads `key=value,key=value` (or nothing) for a technique with these settings.
+pub fn parse_values(technique: &str, fields: &'static [Setting], text: &str) -> Result<Map<String, Value>, SpecError> {
+    let technique = technique.to_owned();
+    let mut values = Map::new();
+    for part in text.split(',').filter(|p| !p.trim().is_empty()) {
+        let Some((key, value)) = part.split_once('=') else {
+            return Err(SpecError::Form { technique, part: part.to_owned() });
+        };
+        let (key, value) = (key.trim(), value.trim());
+        let Some(field) = fields.iter().find(|f| f.key == key) else {
+            return Err(SpecError::UnknownKey {
+                nearest: nearest(key, fields.iter().map(|f| f.key)),
+                known: fields.iter().map(|f| f.key).collect(),
+                key: key.to_owned(),
+                technique,
+            });
+        };
+        let parsed = parse_value(field.kind, value).map_err(|expected| SpecError::Value {
+            technique: technique.clone(),
+            key: key.to_owned(),
+            value: value.to_owned(),
+            expected,
+        })?;
+        if values.insert(key.to_owned(), parsed).is_some() {
+            return Err(SpecError::Twice { technique, key: key.to_owned() });
+        }
+    }
+    Ok(values)
+}
+
+fn parse_value(kind: Kind, text: &str) -> Result<Value, String> {
+    match kind {
+        Kind::Integer { min, max } => {
+            let expected = || format!("expected a whole number from {min} to {max}");
+            text.parse::<u32>().ok().filter(|v| (min..=max).contains(v)).map(Value::from).ok_or_else(expected)
+        }
+        Kind::Number { min, max } => {
+            let expected = || format!("expected a number from {min} to {max}");
+            text.parse::<f32>().ok().filter(|v| (min..=max).contains(v)).map(Value::from).ok_or_else(expected)
+        }
+        Kind::Toggle => text.parse::<bool>().map(Value::from).map_err(|_| "expected true or false".to_owned()),
+        Kind::Choice { options } => {
+            let found = options.iter().find(|o| **o == text).map(|o| Value::from(*o));
+            found.ok_or_else(|| format!("expected one of {}", options.join(", ")))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FIELDS: &[Setting] = &[
+        Setting { key: "map", help: "", kind: Kind::Integer { min: 1, max: 100 } },
+        Setting { key: "width", help: "", kind: Kind::Number { min: 0.0, max: 1.0 } },
+        Setting { key: "lookup", help: "", kind: Kind::Choice { options: &["nearest", "linear"] } },
+    ];
+
+    #[test]
+    fn values_are_typed_and_ranged() {
+        let v = parse_values("t", FIELDS, "map=7, width=0.5,lookup=linear").unwrap();
+        assert_eq!(Value::Object(v), serde_json::json!({"map": 7, "width": 0.5, "lookup": "linear"}));
+        for bad in ["map=0", "map=101", "map=-1", "map=x", "width=nan", "width=2", "lookup=cubic", "map", "map=1,map=2"]
+        {
+            assert!(parse_values("t", FIELDS, bad).is_err(), "{bad} must be refused");
+        }
+    }
+
+    #[test]
+    fn the_nearest_key_is_suggested() {
+        let error = parse_values("t", FIELDS, "mpa=3").unwrap_err();
+        assert!(error.to_string().contains("did you mean `map`"), "{error}");
+    }
+}

@@ -1,0 +1,227 @@
+//! From WESL modules to a validated WGSL program whose bindings are known by name.
+
+use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
+use std::collections::BTreeMap;
+use wesl::{ModulePath, VirtualResolver, Wesl};
+
+include!(concat!(env!("OUT_DIR"), "/shader_sources.rs"));
+
+/// A WESL module with its switches set. What differs between variants is a feature (`@if(name)` in the shader) or a
+/// constant of the pipeline (`override`).
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+pub struct ShaderKey {
+    /// Path below `src`, such as `techniques::pcss::filter`.
+    pub module: &'static str,
+    /// The features that are on; all others are off.
+    pub features: Vec<&'static str>,
+    /// WGSL text of the structs that the host shares, importable from `package::host`.
+    pub structs: String,
+}
+
+impl ShaderKey {
+    /// A module with every feature off.
+    pub fn new(module: &'static str) -> Self {
+        ShaderKey { module, ..Default::default() }
+    }
+
+    /// Turns a feature on if `on`.
+    pub fn feature(mut self, name: &'static str, on: bool) -> Self {
+        if on {
+            self.features.push(name);
+        }
+        self
+    }
+
+    /// Shares a host struct with the shader.
+    pub fn with<T: HostStruct>(mut self) -> Self {
+        self.structs.push_str(&T::wgsl());
+        self
+    }
+}
+
+/// A struct that is declared once, in Rust, and whose WGSL declaration is made from it: see [`gpu_struct`](crate::gpu_struct).
+pub trait HostStruct: encase::ShaderType + encase::internal::WriteInto {
+    /// The declaration in WGSL.
+    fn wgsl() -> String;
+
+    /// The bytes of a uniform buffer.
+    fn uniform_bytes(&self) -> Vec<u8> {
+        let mut buffer = encase::UniformBuffer::new(Vec::new());
+        buffer.write(self).expect("a vector grows as needed");
+        buffer.into_inner()
+    }
+}
+
+/// The WGSL name of a Rust type that can stand in a [`HostStruct`].
+pub trait WgslType {
+    /// As written in WGSL.
+    const NAME: &'static str;
+}
+
+macro_rules! wgsl_types {
+    ($($rust:ty => $wgsl:literal),* $(,)?) => { $(impl WgslType for $rust { const NAME: &'static str = $wgsl; })* };
+}
+wgsl_types! {
+    f32 => "f32", u32 => "u32", i32 => "i32",
+    glam::Vec2 => "vec2<f32>", glam::Vec3 => "vec3<f32>", glam::Vec4 => "vec4<f32>",
+    glam::UVec2 => "vec2<u32>", glam::UVec4 => "vec4<u32>", glam::Mat3 => "mat3x3<f32>", glam::Mat4 => "mat4x4<f32>",
+    [glam::Vec4; 6] => "array<vec4<f32>, 6>",
+}
+
+/// Declares a struct once for the host and for the shaders that import it from `package::host`.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! gpu_struct {
+    ($(#[$meta:meta])* $vis:vis struct $name:ident { $($(#[$field_meta:meta])* $field:ident : $type:ty),* $(,)? }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, encase::ShaderType)]
+        $vis struct $name { $($(#[$field_meta])* pub $field: $type),* }
+
+        impl $crate::shader::HostStruct for $name {
+            fn wgsl() -> String {
+                let mut text = format!("struct {} {{\n", stringify!($name));
+                $(text.push_str(&format!("    {}: {},\n", stringify!($field), <$type as $crate::shader::WgslType>::NAME));)*
+                text.push_str("}\n");
+                text
+            }
+        }
+    };
+}
+
+/// A shader that does not compose or does not validate. The message holds the place in the source.
+#[derive(Debug, thiserror::Error)]
+#[error("shader {module}: {message}")]
+pub struct ShaderError {
+    /// The module that was composed.
+    pub module: String,
+    /// What is wrong, with an excerpt.
+    pub message: String,
+}
+
+/// A composed program.
+pub struct Program {
+    /// Plain WGSL.
+    pub wgsl: String,
+    module: naga::Module,
+    info: ModuleInfo,
+}
+
+/// Group and slot of each resource, by the name of its variable.
+pub type Bindings = BTreeMap<String, (u32, u32)>;
+
+impl Program {
+    /// Links a module with what it imports and validates the result. Needs no GPU.
+    pub fn compose(key: &ShaderKey) -> Result<Program, ShaderError> {
+        let error = |message: String| ShaderError { module: key.module.to_owned(), message };
+        let mut resolver = VirtualResolver::new();
+        for (path, text) in SOURCES {
+            resolver.add_module(module_path(path), (*text).into());
+        }
+        resolver.add_module(module_path("package::host"), key.structs.as_str().into());
+        let mut linker = Wesl::new("").set_custom_resolver(resolver);
+        linker.set_missing_feature_behavior(false).use_stripping(true);
+        for feature in &key.features {
+            linker.set_feature(feature, true);
+        }
+        let linked =
+            linker.compile(&module_path(&format!("package::{}", key.module))).map_err(|e| error(e.to_string()))?;
+        let wgsl = linked.to_string();
+        let module = naga::front::wgsl::parse_str(&wgsl).map_err(|e| error(e.emit_to_string(&wgsl)))?;
+        let info = Validator::new(ValidationFlags::all(), Capabilities::all())
+            .validate(&module)
+            .map_err(|e| error(e.emit_to_string(&wgsl)))?;
+        Ok(Program { wgsl, module, info })
+    }
+
+    /// Names of the entry points.
+    pub fn entry_points(&self) -> impl Iterator<Item = &str> {
+        self.module.entry_points.iter().map(|e| e.name.as_str())
+    }
+
+    /// Threads of a workgroup of a compute entry point.
+    pub fn workgroup_size(&self, entry: &str) -> [u32; 3] {
+        self.module.entry_points.iter().find(|e| e.name == entry).map_or([1; 3], |e| e.workgroup_size)
+    }
+
+    /// The resources that the named entry points use.
+    pub fn bindings(&self, entries: &[&str]) -> Bindings {
+        let used = |handle: naga::Handle<naga::GlobalVariable>| {
+            self.module.entry_points.iter().enumerate().any(|(i, entry)| {
+                entries.contains(&entry.name.as_str()) && !self.info.get_entry_point(i)[handle].is_empty()
+            })
+        };
+        self.module
+            .global_variables
+            .iter()
+            .filter(|(handle, _)| used(*handle))
+            .filter_map(|(_, v)| Some((v.name.clone()?, v.binding.map(|b| (b.group, b.binding))?)))
+            .collect()
+    }
+}
+
+fn module_path(path: &str) -> ModulePath {
+    path.parse().expect("module paths are made of file names")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every struct that any shader shares with the host.
+    fn host_structs() -> String {
+        use crate::{casters, frame, passes, techniques};
+        let mut all = String::new();
+        all += &casters::BatchLayout::wgsl();
+        all += &frame::FrameUniform::wgsl();
+        all += &passes::culling::MapView::wgsl();
+        all += &passes::geometry_buffer::ViewUniform::wgsl();
+        all += &techniques::pcf::PcfUniform::wgsl();
+        all
+    }
+
+    /// All names in `@if(...)` of a module.
+    fn features_of(text: &'static str) -> Vec<&'static str> {
+        let mut names: Vec<&str> = text
+            .match_indices("@if(")
+            .flat_map(|(at, _)| {
+                let inside = &text[at + 4..];
+                let end = inside.find(')').expect("closed");
+                inside[..end].split(|c: char| !(c.is_alphanumeric() || c == '_')).filter(|w| !w.is_empty())
+            })
+            .collect();
+        names.sort();
+        names.dedup();
+        names
+    }
+
+    #[test]
+    fn every_variant_of_every_entry_module_composes_and_validates() {
+        let structs = host_structs();
+        let mut variants = 0;
+        for (path, text) in SOURCES {
+            if !["@compute", "@vertex", "@fragment"].iter().any(|stage| text.contains(stage)) {
+                continue;
+            }
+            let features = features_of(text);
+            for mask in 0..1u32 << features.len() {
+                let on = features.iter().enumerate().filter(|(i, _)| mask >> i & 1 == 1).map(|(_, f)| *f).collect();
+                let key = ShaderKey {
+                    module: path.strip_prefix("package::").unwrap(),
+                    features: on,
+                    structs: structs.clone(),
+                };
+                if let Err(e) = Program::compose(&key) {
+                    panic!("{e} with features {:?}", key.features);
+                }
+                variants += 1;
+            }
+        }
+        assert!(variants >= 10, "only {variants} variants found: are the shaders embedded?");
+    }
+
+    #[test]
+    fn an_unknown_import_is_an_error_that_names_the_module() {
+        let error = Program::compose(&ShaderKey::new("techniques::nothing")).err().expect("must fail");
+        assert!(error.to_string().contains("techniques::nothing"), "{error}");
+    }
+}

@@ -1,0 +1,9 @@
+//! The techniques: one folder each, and one line each in the list.
+
+use crate::technique::{TechniqueInfo, entry};
+
+pub mod hard;
+pub mod pcf;
+
+/// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
+pub const TECHNIQUES: &[TechniqueInfo] = &[entry::<hard::Hard>(), entry::<pcf::Pcf>()];

@@ -1,0 +1,113 @@
+//! Percentage-closer filtering: the comparison's results are filtered, not the depths [Reeves et al. 1987].
+
+use crate::frame::FrameUniform;
+use crate::passes::depth_map::DepthMap;
+use crate::pipeline::ComputePipeline;
+use crate::recorder::{Recorder, Work};
+use crate::resource::uniform;
+use crate::shader::ShaderKey;
+use crate::technique::{About, Describe, Memory, Technique};
+use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
+use std::sync::Arc;
+
+crate::choices! {
+    /// What one lookup is.
+    pub enum Lookup {
+        /// The texel that the position falls into.
+        Nearest = "nearest",
+        /// The sampler's own comparison of 2 x 2 texels, interpolated.
+        Hardware = "hardware",
+        /// 2 x 2 texels compared with the receiver's plane at each of them, interpolated.
+        Bilinear = "bilinear",
+    }
+}
+
+crate::settings! {
+    /// Settings of [`Pcf`].
+    pub struct PcfSettings {
+        /// Shadow map, texels a side.
+        map: u32 = 2048, Kind::Integer { min: 16, max: 16384 };
+        /// Width of the Gaussian kernel in lookups a side; 1 is a single lookup.
+        pcf: u32 = 5, Kind::Integer { min: 1, max: 33 };
+        /// One lookup: the nearest texel, the sampler's 2 x 2 comparison, or 2 x 2 compared with the receiver's plane.
+        lookup: Lookup = Lookup::Bilinear, Kind::Choice { options: Lookup::OPTIONS };
+    }
+}
+
+gpu_struct! {
+    /// The kernel.
+    pub(crate) struct PcfUniform {
+        /// Lookups a side.
+        side: i32,
+        /// Of the Gaussian, in texels.
+        deviation: f32,
+        /// From the first lookup to the middle of the kernel, in texels.
+        shift: f32,
+    }
+}
+
+/// Shadow of the light's centre with filtered edges of a constant width in texels.
+pub struct Pcf {
+    settings: PcfSettings,
+    filter: Arc<ComputePipeline>,
+    kernel: wgpu::Buffer,
+    comparison: wgpu::Sampler,
+    map: Option<DepthMap>,
+}
+
+impl Describe for Pcf {
+    type Settings = PcfSettings;
+    const ABOUT: About = About {
+        name: "pcf",
+        title: "Percentage-closer filtering",
+        source: "Reeves et al. 1987",
+        summary: "filtered comparisons; edges as soft as the kernel is wide, whatever the light's size",
+    };
+
+    fn make(gpu: &Gpu, settings: PcfSettings) -> Result<Self, Error> {
+        let key = ShaderKey::new("techniques::pcf::filter")
+            .feature("hardware", settings.lookup == Lookup::Hardware)
+            .feature("bilinear", settings.lookup == Lookup::Bilinear)
+            .with::<FrameUniform>()
+            .with::<PcfUniform>();
+        let n = settings.pcf as i32;
+        // The kernel ends at two standard deviations.
+        let value = PcfUniform { side: n, deviation: (n as f32 / 4.0).max(0.25), shift: 0.5 * (n - 1) as f32 };
+        Ok(Pcf {
+            filter: gpu.compute_pipeline(&key, "filter")?,
+            kernel: uniform(gpu, "pcf kernel", &value),
+            comparison: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+                label: Some("shadow comparison"),
+                mag_filter: wgpu::FilterMode::Linear,
+                min_filter: wgpu::FilterMode::Linear,
+                compare: Some(wgpu::CompareFunction::GreaterEqual),
+                ..Default::default()
+            }),
+            settings,
+            map: None,
+        })
+    }
+}
+
+impl Technique for Pcf {
+    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+        let map = DepthMap::ensure(&mut self.map, recorder.gpu, self.settings.map, &frame.casters)?;
+        map.record(recorder, &frame.casters, frame.map_clip_from_world())?;
+        let set = bindings! {
+            frame: &frame.uniform,
+            geometry_depth: &frame.geometry.depth,
+            geometry_normal: &frame.geometry.normal,
+            depth_map: &map.texture,
+            comparison: &self.comparison,
+            kernel: &self.kernel,
+            visibility: &frame.visibility,
+        };
+        let [width, height] = frame.geometry.size;
+        recorder.compute("percentage-closer filter", &self.filter, set, Work::Threads([width, height, 1]));
+        Ok(())
+    }
+
+    fn memory(&self) -> Vec<Memory> {
+        self.map.iter().flat_map(DepthMap::memory).collect()
+    }
+}
