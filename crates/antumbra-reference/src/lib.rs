@@ -1,1 +1,28 @@
-//! x
+//! The ray-traced truth: what fraction of a one-sided rectangular light every pixel sees.
+//!
+//! Primary rays go through a fixed grid of sub-pixels, shadow rays from what they hit to the points of a scrambled
+//! (0,2)-net on the light. The picture is the mean over the sub-pixels, so edges are box-filtered over the pixel; the
+//! same seed gives the same bytes on any number of threads. [`Tracer`] holds the scene's triangles in a bounding
+//! volume hierarchy and answers single rays too; [`View`] traces pixels and rows of one picture; [`trace`] does all.
+//!
+//! Conventions: pixel (column x, row y) covers [x, x+1] × [y, y+1], row 0 on top. Surfaces are two-sided, their
+//! geometric normal turned to the camera. A light point below the receiver's tangent plane is not seen, and a receiver
+//! behind the light sees none of it. See `Reference::valid` for the pixels that errors should be measured on.
+#![deny(missing_docs)]
+
+mod bvh;
+mod cutout;
+mod exact;
+mod geometry;
+mod packet;
+mod pattern;
+mod picture;
+mod shaft;
+mod tracer;
+mod view;
+
+pub mod cache;
+
+pub use picture::{Reference, ReferenceError, Settings, trace};
+pub use tracer::{Hit, Ray, Tracer};
+pub use view::{Pixel, View};

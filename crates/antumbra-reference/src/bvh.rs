@@ -1,0 +1,63 @@
+//! The bounding volume hierarchy: built by `obvhs`, kept in our own small nodes with boxes made safe for rounding.
+
+use crate::geometry::Geometry;
+use glam::{Vec3, Vec3A};
+use obvhs::{BvhBuildParams, aabb, bvh2::builder::build_bvh2};
+use std::time::Duration;
+
+/// A box and what is in it: two nodes side by side, or a run of triangles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Node {
+    pub min: Vec3,
+    /// First triangle of a leaf, or the first of the two children.
+    pub first: u32,
+    pub max: Vec3,
+    /// Number of triangles in a leaf, zero for an inner node.
+    pub count: u32,
+}
+
+/// A binary tree over triangles that stand in leaf order; no nodes if there are no triangles.
+pub(crate) struct Bvh {
+    pub nodes: Vec<Node>,
+}
+
+struct Bounds(aabb::Aabb);
+
+impl obvhs::Boundable for Bounds {
+    fn aabb(&self) -> aabb::Aabb {
+        self.0
+    }
+}
+
+impl Bvh {
+    /// Builds the tree and puts the triangles in its order.
+    pub fn build(geometry: &mut Geometry) -> Bvh {
+        if geometry.triangles.is_empty() {
+            return Bvh { nodes: Vec::new() };
+        }
+        let bounds: Vec<Bounds> =
+            geometry.triangles.iter().map(|t| Bounds(aabb::Aabb::from_points(&t.vertices.map(Vec3A::from)))).collect();
+        let bvh = build_bvh2(&bounds, BvhBuildParams::medium_build(), &mut Duration::default());
+        geometry.reorder(&bvh.primitive_indices);
+        let scale = geometry.triangles.iter().flat_map(|t| t.vertices).fold(Vec3::ZERO, |m, v| m.max(v.abs()));
+        let nodes = bvh
+            .nodes
+            .iter()
+            .map(|n| {
+                let (min, max) = (Vec3::from(n.aabb().min), Vec3::from(n.aabb().max));
+                Node {
+                    min: min - pad(min, scale),
+                    max: max + pad(max, scale),
+                    first: n.first_index,
+                    count: n.prim_count,
+                }
+            })
+            .collect();
+        Bvh { nodes }
+    }
+}
+
+/// Keeps a ray that runs exactly in a face of the box inside of it, whatever the sign of a zero direction.
+fn pad(bound: Vec3, scale: Vec3) -> Vec3 {
+    bound.abs() * f32::EPSILON + scale * 1e-12 + Vec3::splat(1e-24)
+}
