@@ -66,6 +66,21 @@ pub enum SceneError {
         /// What the file says.
         position: [f32; 3],
     },
+    /// A vertex is too far away to be rendered in single precision.
+    #[error(
+        "{file}, mesh {mesh:?}: vertex {vertex} comes to lie at {position:?}; coordinates must stay within 1e9 metres, \
+         scale the model down"
+    )]
+    TooFar {
+        /// The file's name.
+        file: String,
+        /// The mesh's name.
+        mesh: String,
+        /// Number of the vertex in the mesh, from 0.
+        vertex: usize,
+        /// Where it is in the world.
+        position: [f32; 3],
+    },
     /// A triangle uses a vertex that is not there.
     #[error("{file}{place}: index {index} is out of range, there are {count} {what}")]
     IndexOutOfRange {
@@ -81,7 +96,9 @@ pub enum SceneError {
         what: &'static str,
     },
     /// The file says that it holds more than it does.
-    #[error("{file}{place}: {what} needs {needed} bytes and only {available} are there; the file is damaged or cut off")]
+    #[error(
+        "{file}{place}: {what} needs {needed} bytes and only {available} are there; the file is damaged or cut off"
+    )]
     Truncated {
         /// The file's name.
         file: String,

@@ -8,13 +8,21 @@ mod bounds;
 pub mod builtin;
 mod camera;
 mod error;
+#[cfg(feature = "import")]
+mod framing;
+#[cfg(feature = "import")]
+pub mod import;
 mod light;
+mod load;
 mod mesh;
 mod scene;
+#[cfg(feature = "scene-file")]
+pub mod scene_file;
 
 pub use bounds::Aabb;
 pub use camera::Camera;
-pub use error::SceneError;
+pub use error::{Place, SceneError};
 pub use light::RectLight;
+pub use load::load;
 pub use mesh::{Material, Mesh, Texture, Wrap};
 pub use scene::{Instance, Scene};

@@ -1,0 +1,109 @@
+//! Importers: bytes to [`Model`]. Files that a file refers to are asked for by name, so nothing here needs a disk.
+
+#[cfg(feature = "gltf")]
+pub mod gltf;
+#[cfg(feature = "obj")]
+pub mod obj;
+#[cfg(any(feature = "gltf", feature = "obj"))]
+mod picture;
+#[cfg(feature = "ply")]
+pub mod ply;
+#[cfg(any(feature = "obj", feature = "ply"))]
+mod polygon;
+
+use crate::{Aabb, Camera, Instance, Material, Mesh, RectLight, SceneError};
+use glam::Affine3A;
+
+/// Gives the bytes of a file that the imported file refers to, by the name it uses.
+pub type ReadFile<'a> = dyn FnMut(&str) -> std::io::Result<Vec<u8>> + 'a;
+
+/// Coordinates beyond this, in metres, leave single precision no room for the squares and products of rendering.
+const FARTHEST: f32 = 1e9;
+
+/// What an importer finds in a file: at least one triangle, maybe a camera, maybe a light.
+/// [`Model::into_scene`] fills in what is missing.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Model {
+    /// For messages and reports.
+    pub name: String,
+    /// Triangle meshes in object space.
+    pub meshes: Vec<Mesh>,
+    /// What the meshes are made of.
+    pub materials: Vec<Material>,
+    /// Where the meshes stand.
+    pub instances: Vec<Instance>,
+    /// The file's camera. An infinite `far` is still to be fitted to the scene.
+    pub camera: Option<Camera>,
+    /// The file's light.
+    pub light: Option<RectLight>,
+}
+
+impl Model {
+    /// World-space box around everything.
+    pub fn bounds(&self) -> Aabb {
+        self.world_points().fold(Aabb::EMPTY, |b, p| Aabb { min: b.min.min(p), max: b.max.max(p) })
+    }
+
+    /// World-space corners of every triangle.
+    pub(crate) fn world_points(&self) -> impl Iterator<Item = glam::Vec3> {
+        self.instances.iter().flat_map(|i| {
+            let mesh = &self.meshes[i.mesh];
+            mesh.indices.iter().map(|&k| i.world_from_object.transform_point3(mesh.positions[k as usize]))
+        })
+    }
+
+    /// Refuses a model that has no triangles or that cannot be rendered in single precision.
+    pub(crate) fn checked(self, file: &str) -> Result<Model, SceneError> {
+        if self.instances.iter().all(|i| self.meshes[i.mesh].indices.is_empty()) {
+            let advice = "export it with its faces".to_string();
+            return Err(SceneError::NoTriangles { file: file.to_string(), advice });
+        }
+        for instance in &self.instances {
+            let mesh = &self.meshes[instance.mesh];
+            for &k in &mesh.indices {
+                let p = instance.world_from_object.transform_point3(mesh.positions[k as usize]);
+                let fits = p.is_finite() && p.abs().max_element() <= FARTHEST;
+                if !fits {
+                    return Err(SceneError::TooFar {
+                        file: file.to_string(),
+                        mesh: mesh.name.clone(),
+                        vertex: k as usize,
+                        position: p.to_array(),
+                    });
+                }
+            }
+        }
+        Ok(self)
+    }
+
+    /// A model whose meshes stand where their vertices are.
+    #[cfg(any(feature = "obj", feature = "ply"))]
+    pub(crate) fn of_meshes(name: &str, meshes: Vec<Mesh>, materials: Vec<Material>) -> Model {
+        let instances = (0..meshes.len())
+            .map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY, receiver_only: false })
+            .collect();
+        Model { name: name.to_string(), meshes, materials, instances, camera: None, light: None }
+    }
+
+    /// Takes in another model's meshes and materials and returns its instances, renumbered and not yet placed. Its
+    /// camera and light count only where there is none yet.
+    #[cfg(feature = "scene-file")]
+    pub(crate) fn absorb(&mut self, other: Model, place: &Affine3A) -> Vec<Instance> {
+        let (mesh_base, material_base) = (self.meshes.len(), self.materials.len());
+        self.materials.extend(other.materials);
+        self.meshes.extend(other.meshes.into_iter().map(|m| Mesh { material: m.material + material_base, ..m }));
+        self.camera = self.camera.or(other.camera.map(|c| Camera {
+            eye: place.transform_point3(c.eye),
+            target: place.transform_point3(c.target),
+            up: place.transform_vector3(c.up),
+            ..c
+        }));
+        self.light = self.light.or(other.light.map(|l| RectLight {
+            center: place.transform_point3(l.center),
+            target: place.transform_point3(l.target),
+            up: place.transform_vector3(l.up),
+            ..l
+        }));
+        other.instances.into_iter().map(|i| Instance { mesh: i.mesh + mesh_base, ..i }).collect()
+    }
+}

@@ -1,0 +1,200 @@
+//! Material libraries (MTL): diffuse colour, diffuse texture, and transparency as a mask.
+
+use super::statements::text_after;
+use crate::import::{ReadFile, picture};
+use crate::{Material, Texture, Wrap};
+use glam::Vec3;
+use image::RgbaImage;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Materials by name.
+pub(super) type Library = HashMap<String, Material>;
+
+/// A surface that lets through more than this counts as a hole: a shadow is cast or it is not.
+const CUTOFF: f32 = 0.5;
+
+/// What the file says of one material.
+#[derive(Default)]
+struct Entry {
+    name: String,
+    color: Option<Vec3>,
+    opacity: Option<f32>,
+    color_map: Option<Map>,
+    opacity_map: Option<Map>,
+}
+
+/// A texture's file and the options that matter.
+#[derive(Clone, PartialEq)]
+struct Map {
+    path: String,
+    clamp: bool,
+}
+
+/// Reads the libraries that an OBJ file names. What cannot be read is a warning and left out.
+pub(super) fn load(names: &[String], obj: &str, read_file: &mut ReadFile) -> Library {
+    let mut library = Library::new();
+    for names in names {
+        for (path, bytes) in find(names, obj, read_file) {
+            let mut pictures = Pictures { mtl: &path, read_file, known: HashMap::new() };
+            for entry in entries(&bytes) {
+                let material = pictures.material(&entry);
+                library.entry(entry.name).or_insert(material);
+            }
+        }
+    }
+    library
+}
+
+/// The files behind one `mtllib`: one whose name may hold spaces, or several.
+fn find(names: &str, obj: &str, read_file: &mut ReadFile) -> Vec<(String, Vec<u8>)> {
+    let whole = with_slashes(names);
+    match read_file(&whole) {
+        Ok(bytes) => return vec![(whole, bytes)],
+        Err(error) if !names.contains(char::is_whitespace) => {
+            tracing::warn!("{obj}: cannot read the material library {whole}: {error}; its materials are grey");
+            return Vec::new();
+        }
+        Err(_) => {}
+    }
+    let mut found = Vec::new();
+    for path in names.split_whitespace().map(with_slashes) {
+        match read_file(&path) {
+            Ok(bytes) => found.push((path, bytes)),
+            Err(error) => tracing::warn!("{obj}: cannot read the material library {path}: {error}"),
+        }
+    }
+    found
+}
+
+fn with_slashes(path: &str) -> String {
+    path.replace('\\', "/")
+}
+
+fn entries(bytes: &[u8]) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    for line in bytes.split(|&b| b == b'\n') {
+        let line = line.trim_ascii();
+        let keyword = line.split(|b| b.is_ascii_whitespace()).next().unwrap_or_default();
+        let text = text_after(line, keyword);
+        if keyword == b"newmtl" {
+            entries.push(Entry { name: text, ..Entry::default() });
+            continue;
+        }
+        let Some(entry) = entries.last_mut() else { continue };
+        let numbers = || text.split_whitespace().map_while(|w| w.parse::<f32>().ok()).filter(|x| x.is_finite());
+        match keyword {
+            b"Kd" => {
+                let values: Vec<f32> = numbers().collect();
+                entry.color = match values[..] {
+                    [r, g, b, ..] => Some(Vec3::new(r, g, b)),
+                    [grey, ..] => Some(Vec3::splat(grey)),
+                    [] => None,
+                };
+            }
+            b"d" => entry.opacity = numbers().next(),
+            b"Tr" => entry.opacity = numbers().next().map(|t| 1.0 - t),
+            b"map_Kd" => entry.color_map = map(&text),
+            b"map_d" => entry.opacity_map = map(&text),
+            _ => {}
+        }
+    }
+    entries
+}
+
+/// Options, then a file name that may hold spaces.
+fn map(text: &str) -> Option<Map> {
+    let (mut rest, mut clamp) = (text.trim(), false);
+    while rest.starts_with('-') {
+        let (option, after) = rest.split_once(char::is_whitespace)?;
+        rest = after.trim_start();
+        let word = rest.split(char::is_whitespace).next()?;
+        let (least, most) = match option {
+            "-mm" => (2, 2),
+            "-o" | "-s" | "-t" => (1, 3),
+            _ => (1, 1),
+        };
+        clamp |= option == "-clamp" && word == "on";
+        for i in 0..most {
+            let (word, after) = rest.split_once(char::is_whitespace)?;
+            if i >= least && word.parse::<f32>().is_err() {
+                break;
+            }
+            rest = after.trim_start();
+        }
+    }
+    (!rest.is_empty()).then(|| Map { path: with_slashes(rest), clamp })
+}
+
+/// Reads the pictures of one library.
+struct Pictures<'a, 'r> {
+    mtl: &'a str,
+    read_file: &'a mut ReadFile<'r>,
+    known: HashMap<String, Option<Arc<RgbaImage>>>,
+}
+
+impl Pictures<'_, '_> {
+    fn material(&mut self, entry: &Entry) -> Material {
+        let map = entry.color_map.as_ref().or(entry.opacity_map.as_ref());
+        let pixels = self.pixels(entry);
+        let opacity = entry.opacity.unwrap_or(1.0);
+        let masked = opacity < 1.0 || (entry.opacity_map.is_some() && pixels.is_some());
+        // Where there is a texture, a black diffuse colour is a common exporter's slip for white.
+        let color = entry.color.filter(|c| pixels.is_none() || *c != Vec3::ZERO).unwrap_or(match pixels {
+            Some(_) => Vec3::ONE,
+            None => Material::default().base_color.truncate(),
+        });
+        let wrap = if map.is_some_and(|m| m.clamp) { Wrap::Clamp } else { Wrap::Repeat };
+        Material {
+            base_color: color.extend(opacity),
+            texture: pixels.map(|p| {
+                let (width, height) = p.dimensions();
+                Arc::new(Texture { width, height, rgba: p.into_raw(), wrap: [wrap; 2], nearest: false })
+            }),
+            alpha_cutoff: masked.then_some(CUTOFF),
+            ..Material::default()
+        }
+    }
+
+    /// Colour from one picture, alpha from the other.
+    fn pixels(&mut self, entry: &Entry) -> Option<RgbaImage> {
+        let color = entry.color_map.as_ref().and_then(|m| self.read(&m.path));
+        let opacity = entry.opacity_map.as_ref().and_then(|m| self.read(&m.path));
+        let Some(opacity) = opacity else {
+            let mut color = RgbaImage::clone(&*color?);
+            color.pixels_mut().for_each(|p| p[3] = 255);
+            return Some(color);
+        };
+        let mut pixels = match color {
+            Some(color) => RgbaImage::clone(&color),
+            None => RgbaImage::from_pixel(opacity.width(), opacity.height(), image::Rgba([255; 4])),
+        };
+        // An opacity map is a grey picture, or a picture whose alpha channel says it.
+        let channel = if opacity.pixels().any(|p| p[3] < 255) { 3 } else { 0 };
+        let (width, height) = pixels.dimensions();
+        for (x, y, pixel) in pixels.enumerate_pixels_mut() {
+            let same = |i: u32, from: u32, to: u32| (u64::from(i) * u64::from(to) / u64::from(from)) as u32;
+            pixel[3] = opacity.get_pixel(same(x, width, opacity.width()), same(y, height, opacity.height()))[channel];
+        }
+        Some(pixels)
+    }
+
+    fn read(&mut self, path: &str) -> Option<Arc<RgbaImage>> {
+        if let Some(known) = self.known.get(path) {
+            return known.clone();
+        }
+        // A texture's path is relative to its library.
+        let folder = self.mtl.rfind('/').map_or("", |i| &self.mtl[..=i]);
+        let full = if path.starts_with('/') { path.to_string() } else { format!("{folder}{path}") };
+        let read = (self.read_file)(&full).map_err(|e| e.to_string()).and_then(|bytes| picture::decode(&bytes));
+        let picture = match read {
+            Ok(picture) => Some(Arc::new(picture)),
+            Err(error) => {
+                tracing::warn!("{}: cannot read the texture {full}: {error}; it is left out", self.mtl);
+                None
+            }
+        };
+        self.known.insert(path.to_string(), picture.clone());
+        picture
+    }
+}

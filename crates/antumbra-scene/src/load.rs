@@ -1,0 +1,98 @@
+//! From what a user writes to a scene.
+
+use crate::{Scene, SceneError, builtin};
+
+/// Loads the scene that an argument names: `builtin:NAME[:key=value,…]`, a model (`.glb`, `.gltf`, `.obj`, `.ply`) or a
+/// scene file (`.toml`, `.json`), in upper or lower case.
+pub fn load(argument: &str) -> Result<Scene, SceneError> {
+    match argument.strip_prefix("builtin:") {
+        Some(spec) => builtin::build(spec),
+        None => load_file(argument),
+    }
+}
+
+#[cfg(not(feature = "import"))]
+fn load_file(argument: &str) -> Result<Scene, SceneError> {
+    let message = "this program is built without file formats; use builtin:NAME".to_string();
+    Err(SceneError::Argument { argument: argument.to_string(), message })
+}
+
+#[cfg(feature = "import")]
+use files::load_file;
+#[cfg(feature = "import")]
+mod files {
+    use super::{Scene, SceneError, builtin};
+    use crate::import::{self, Model};
+    use std::path::Path;
+
+    const MODELS: &str = ".glb, .gltf, .obj or .ply";
+
+    pub(super) fn load_file(argument: &str) -> Result<Scene, SceneError> {
+        let path = Path::new(argument);
+        let mut scene = match extension(path).as_str() {
+            #[cfg(feature = "scene-file")]
+            "toml" => load_scene_file(path, crate::scene_file::Format::Toml)?,
+            #[cfg(feature = "scene-file")]
+            "json" => load_scene_file(path, crate::scene_file::Format::Json)?,
+            _ => load_model(path)?.into_scene(),
+        };
+        scene.name = path.file_stem().map_or(argument.into(), |s| s.to_string_lossy().into_owned());
+        Ok(scene)
+    }
+
+    fn extension(path: &Path) -> String {
+        path.extension().map_or(String::new(), |e| e.to_string_lossy().to_lowercase())
+    }
+
+    #[cfg(feature = "scene-file")]
+    fn load_scene_file(path: &Path, format: crate::scene_file::Format) -> Result<Scene, SceneError> {
+        let bytes = read(path)?;
+        let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
+        let mut load = |mesh: &str| load_model(&folder.join(mesh));
+        crate::scene_file::parse(&bytes, format, &path.display().to_string(), &mut load)
+    }
+
+    fn load_model(path: &Path) -> Result<Model, SceneError> {
+        let name = path.display().to_string();
+        let parse: fn(&[u8], &str, &mut import::ReadFile) -> Result<Model, SceneError> = match extension(path).as_str()
+        {
+            #[cfg(feature = "gltf")]
+            "glb" | "gltf" => import::gltf::parse,
+            #[cfg(feature = "obj")]
+            "obj" => import::obj::parse,
+            #[cfg(feature = "ply")]
+            "ply" => |bytes, name, _| import::ply::parse(bytes, name),
+            _ => return Err(unknown(path, name)),
+        };
+        let bytes = read(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        parse(&bytes, &name, &mut |other| std::fs::read(folder.join(other)))
+    }
+
+    /// Why a path that no importer takes is not a scene.
+    fn unknown(path: &Path, argument: String) -> SceneError {
+        let is_builtin = builtin::list().iter().any(|b| argument.split(':').next() == Some(b.name));
+        let message = if path.is_dir() {
+            format!("this is a folder; name a file in it: {MODELS}, or a scene file, .toml or .json")
+        } else if is_builtin {
+            format!("there is no such file; did you mean `builtin:{argument}`?")
+        } else if extension(path) == "json" || extension(path) == "toml" {
+            format!("a scene file cannot be used here; give a model: {MODELS}")
+        } else if path.exists() {
+            format!(
+                "this kind of file is not read; give a model ({MODELS}), a scene file (.toml or .json) or builtin:NAME"
+            )
+        } else {
+            "there is no such file".to_string()
+        };
+        SceneError::Argument { argument, message }
+    }
+
+    fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
+        if path.is_dir() {
+            return Err(unknown(path, path.display().to_string()));
+        }
+        let fail = |source| SceneError::Read { file: path.display().to_string(), referrer: None, source };
+        std::fs::read(path).map_err(fail)
+    }
+}
