@@ -32,7 +32,7 @@ fn build(values: &Values) -> Scene {
     let wood = stage.color(0.3, 0.17, 0.09);
     let feather = stage.color(0.16, 0.34, 0.42);
     let breast = stage.color(0.62, 0.3, 0.12);
-    stage.ground(8.0, table);
+    stage.ground(12.0, table);
     stage.solid("wires", brass, |m| bars(m, wires, wire));
     stage.solid("tray", wood, tray);
     stage.solid("perch", wood, |m| {
@@ -46,8 +46,8 @@ fn build(values: &Values) -> Scene {
         beak(m, perched);
     });
     stage.finish(
-        camera([0.62, 0.82, 1.42], [0.07, 0.24, 0.02], 36.0, 0.05, 20.0),
-        light([-0.95, 1.7, -0.35], [0.0, 0.05, 0.0], 0.28, 0.28),
+        camera([0.6, 1.15, 1.62], [0.13, 0.25, 0.03], 34.0, 0.05, 20.0),
+        light([-1.15, 2.1, -0.2], [0.05, 0.05, 0.0], 0.2, 0.2),
     )
 }
 
@@ -63,7 +63,7 @@ fn bars(m: &mut MeshBuilder, wires: usize, wire: f32) {
     for (radius, y) in [(RADIUS, 0.13), (RADIUS, 0.25), (RADIUS, WALL + 0.02), (RADIUS * 0.79, WALL + 0.19)] {
         m.at(Frame::at(0.0, y, 0.0)).torus(radius, 1.5 * wire, 96, 10);
     }
-    let top = Frame::at(0.0, WALL + 0.352, 0.0).pitch(0.25 * TURN).yaw(0.0);
+    let top = Frame::at(0.0, WALL + 0.352, 0.0).pitch(0.25 * TURN);
     m.at(top).torus(0.035, 0.004, 64, 16);
     m.at(Frame::IDENTITY);
 }
@@ -71,7 +71,18 @@ fn bars(m: &mut MeshBuilder, wires: usize, wire: f32) {
 /// A shallow tray on four ball feet.
 fn tray(m: &mut MeshBuilder) {
     let (outer, inner) = (RADIUS + 0.02, RADIUS - 0.012);
-    m.lathe(&[(0.0, 0.012), (outer - 0.01, 0.012), (outer, 0.02), (outer, 0.046), (inner, 0.046), (inner, 0.028), (0.0, 0.028)], 96);
+    m.lathe(
+        &[
+            (0.0, 0.012),
+            (outer - 0.01, 0.012),
+            (outer, 0.02),
+            (outer, 0.046),
+            (inner, 0.046),
+            (inner, 0.028),
+            (0.0, 0.028),
+        ],
+        96,
+    );
     for i in 0..4 {
         let c = on_circle(TURN * (i as f32 + 0.5) / 4.0) * (RADIUS - 0.03);
         m.at(Frame::at(c.x, 0.012, c.y)).sphere(0.013, 24);
@@ -90,7 +101,8 @@ fn bird(m: &mut MeshBuilder, frame: Frame) {
     m.at(stretched(frame.roll(0.45), 1.0)).sphere(0.05, 64);
     m.at(frame.shift(0.052, 0.062, 0.0)).sphere(0.034, 48);
     let tail = |t: f32, r: f32| (Vec3::new(-0.045 - 0.11 * t, -0.015 - 0.075 * t, 0.0), r);
-    let (path, radii): (Vec<Vec3>, Vec<f32>) = [tail(0.0, 0.026), tail(0.5, 0.018), tail(1.0, 0.013)].into_iter().unzip();
+    let (path, radii): (Vec<Vec3>, Vec<f32>) =
+        [tail(0.0, 0.026), tail(0.5, 0.018), tail(1.0, 0.013)].into_iter().unzip();
     m.at(frame).tube(&path, 16, |i| radii[i]);
     for side in [-1.0, 1.0] {
         let mut wing = frame.shift(-0.02, 0.0, side * 0.04).roll(0.6);

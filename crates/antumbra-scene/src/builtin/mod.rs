@@ -7,15 +7,20 @@ mod shapes;
 mod spec;
 mod stage;
 
+mod atrium;
 mod basic;
 mod cage;
 mod fence;
+mod forest;
 mod layers;
+mod pipes;
+mod piping;
 mod plant;
 mod terrain;
-mod windmill;
 #[cfg(test)]
 mod tests;
+mod tree;
+mod windmill;
 
 use crate::{Scene, SceneError};
 use spec::{Values, parse};
@@ -78,7 +83,7 @@ pub fn build(spec: &str) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-static BUILTINS: [BuiltinInfo; 10] = [
+static BUILTINS: [BuiltinInfo; 13] = [
     basic::SQUARE,
     basic::DISK,
     basic::SPHERES,
@@ -89,4 +94,7 @@ static BUILTINS: [BuiltinInfo; 10] = [
     terrain::GRID,
     windmill::WINDMILL,
     plant::PLANT,
+    forest::FOREST,
+    pipes::PIPES,
+    atrium::ATRIUM,
 ];

@@ -41,7 +41,8 @@ fn build(values: &Values) -> Scene {
         m.at(Frame::at(0.0, EARTH - 0.1, 0.0)).lathe(&[(0.0, 0.0), (0.19, 0.0), (0.2, 0.1), (0.0, 0.115)], 64);
     });
     let mut random = Random::new(values.seed());
-    let stalks: Vec<Vec<Vec3>> = (0..values.count("leaves")).map(|i| stalk(i, values.count("leaves"), &mut random)).collect();
+    let stalks: Vec<Vec<Vec3>> =
+        (0..values.count("leaves")).map(|i| stalk(i, values.count("leaves"), &mut random)).collect();
     stage.solid("stems", stem, |m| {
         for path in &stalks {
             m.tube(path, 10, |i| mix(0.0085, 0.0035, i as f32 / (path.len() - 1) as f32));
@@ -53,8 +54,8 @@ fn build(values: &Values) -> Scene {
         }
     });
     stage.finish(
-        camera([0.75, 1.75, 2.9], [0.08, 0.55, 0.0], 38.0, 0.05, 40.0),
-        light([-1.7, 3.1, 0.3], [0.0, 0.3, 0.0], 0.5, 0.5),
+        camera([0.7, 2.3, 2.7], [0.16, 0.5, 0.0], 36.0, 0.05, 40.0),
+        light([-1.7, 3.6, 1.3], [0.0, 0.3, 0.0], 0.42, 0.42),
     )
 }
 

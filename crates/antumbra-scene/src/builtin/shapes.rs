@@ -124,9 +124,8 @@ impl MeshBuilder {
     /// The solid between two outlines in x and y that run from left to right, of thickness `depth` about z = 0.
     pub fn slab(&mut self, lower: &[Vec2], upper: &[Vec2], depth: f32) {
         let z = 0.5 * depth;
-        let mut row = |points: &[Vec2], z: f32| -> Vec<u32> {
-            points.iter().map(|p| self.vertex(p.extend(z))).collect()
-        };
+        let mut row =
+            |points: &[Vec2], z: f32| -> Vec<u32> { points.iter().map(|p| self.vertex(p.extend(z))).collect() };
         let (front_low, front_high) = (row(lower, z), row(upper, z));
         let (back_low, back_high) = (row(lower, -z), row(upper, -z));
         self.join(&front_low, &front_high, false);
@@ -252,8 +251,7 @@ impl MeshBuilder {
                 square.iter().rev().map(at).map(|p| self.vertex(Vec3::new(p.x, y, p.y))).collect()
             };
             let round = |p: &Vec2| p.normalize() * hole;
-            let loops =
-                [ring(&|p| *p, -thickness), ring(&|p| *p, 0.0), ring(&round, 0.0), ring(&round, -thickness)];
+            let loops = [ring(&|p| *p, -thickness), ring(&|p| *p, 0.0), ring(&round, 0.0), ring(&round, -thickness)];
             self.join(&loops[1], &loops[2], true);
             self.join(&loops[2], &loops[3], true);
             self.join(&loops[3], &loops[0], true);

@@ -1,6 +1,6 @@
 //! A windmill in a field, with a cottage.
 
-use super::maths::{Frame, TURN, mix, on_circle, steps};
+use super::maths::{Frame, TURN, cos, mix, on_circle, steps};
 use super::shapes::MeshBuilder;
 use super::spec::Values;
 use super::stage::{Stage, camera, light};
@@ -43,6 +43,7 @@ fn build(values: &Values) -> Scene {
     stage.solid("timber", timber, |m| {
         gallery(m);
         tail_pole(m);
+        openings(m);
         m.at(Frame::at(0.0, HUB.x, 0.0)).rod(Vec3::Z * 0.5, Vec3::Z * (HUB.y + 0.35), 0.22, 24);
     });
     let blade = stage.mesh("sail", sail, lattice);
@@ -53,22 +54,31 @@ fn build(values: &Values) -> Scene {
     let yard = Frame::at(-8.6, 0.0, -2.5).yaw(0.5);
     stage.solid("cottage", plaster, |m| walls(m, yard));
     stage.solid("cottage roof", thatch, |m| roof(m, yard));
-    stage.solid("fence", timber, |m| paddock(m));
+    stage.solid("joinery", timber, |m| cottage_openings(m, yard));
+    stage.solid("fence", timber, paddock);
     stage.finish(
-        camera([9.5, 3.4, 25.0], [-0.4, 6.6, 0.0], 40.0, 0.1, 400.0),
-        light([-30.0, 34.0, 26.0], [0.0, 4.0, 0.0], 3.5, 3.5),
+        camera([11.0, 10.0, 32.0], [2.4, 8.0, 0.0], 44.0, 0.1, 400.0),
+        light([-25.0, 42.0, 20.0], [0.0, 4.0, 0.0], 2.0, 2.0),
     )
 }
 
 /// An eight-cornered tapering tower with a plinth, a door and windows.
 fn tower(m: &mut MeshBuilder) {
-    let profile: Vec<(f32, f32)> = [(0.0, 0.0)]
-        .into_iter()
-        .chain(steps(0.0, TOP, 13).map(|y| (girth(y), y)))
-        .chain([(0.0, TOP)])
-        .collect();
+    let profile: Vec<(f32, f32)> =
+        [(0.0, 0.0)].into_iter().chain(steps(0.0, TOP, 13).map(|y| (girth(y), y))).chain([(0.0, TOP)]).collect();
     m.lathe(&profile, SIDES);
     m.at(Frame::IDENTITY).lathe(&[(0.0, 0.0), (3.5, 0.0), (3.42, 0.5), (0.0, 0.5)], SIDES);
+}
+
+/// The tower's door and shutters, on faces that the camera sees.
+fn openings(m: &mut MeshBuilder) {
+    // A face's middle is nearer to the axis than its corners.
+    let inset = cos(0.5 * TURN / SIDES as f32);
+    for (face, y, width, height) in [(1, 0.0, 1.1, 2.2), (1, 5.4, 0.7, 1.0), (1, 8.0, 0.6, 0.8), (2, 6.6, 0.7, 1.0)] {
+        let turn = TURN * (face as f32 - 0.5) / SIDES as f32;
+        let front = if y == 0.0 { 3.46 } else { girth(y + 0.5 * height) } * inset;
+        m.at(Frame::at(0.0, y, 0.0).yaw(turn).shift(0.0, 0.0, front)).block(width, height, 0.16);
+    }
 }
 
 /// A boat-shaped cap: a rounded ridge along z.
@@ -76,10 +86,8 @@ fn cap(m: &mut MeshBuilder) {
     m.at(Frame::at(0.0, TOP - 0.05, 0.0)).cylinder(2.0, 0.3, 32);
     let mut frame = Frame::at(0.0, TOP + 0.2, -0.15);
     frame.axes.z_axis *= 1.25;
-    let dome: Vec<(f32, f32)> = steps(0.0, 0.25 * TURN, 17)
-        .map(on_circle)
-        .map(|c| (1.9 * c.x, 2.1 * c.y * (1.0 - 0.12 * c.x)))
-        .collect();
+    let dome: Vec<(f32, f32)> =
+        steps(0.0, 0.25 * TURN, 17).map(on_circle).map(|c| (1.9 * c.x, 2.1 * c.y * (1.0 - 0.12 * c.x))).collect();
     let last = dome.len() - 1;
     let profile: Vec<(f32, f32)> =
         [(0.0, 0.0)].into_iter().chain(dome[..last].iter().copied()).chain([(0.0, dome[last].1)]).collect();
@@ -150,13 +158,26 @@ fn walls(m: &mut MeshBuilder, yard: Frame) {
     m.at(yard.shift(-1.6, ridge - 1.2, 0.4)).block(0.7, 2.1, 0.7);
 }
 
+/// The cottage's door and shutters.
+fn cottage_openings(m: &mut MeshBuilder, yard: Frame) {
+    let front = 0.5 * COTTAGE[1];
+    m.at(yard.shift(0.3, 0.0, front)).block(0.95, 1.9, 0.1);
+    for x in [-1.8, 2.0] {
+        m.at(yard.shift(x, 0.95, front)).block(0.9, 0.85, 0.08);
+    }
+}
+
 /// A thick roof with eaves.
 fn roof(m: &mut MeshBuilder, yard: Frame) {
     let [length, width, height, ridge] = COTTAGE;
     let half = 0.5 * width;
     let eaves = |rise: f32| {
         let (out, drop) = (0.45, 0.45 * (ridge - height) / half);
-        [Vec2::new(-half - out, height - drop + rise), Vec2::new(0.0, ridge + rise), Vec2::new(half + out, height - drop + rise)]
+        [
+            Vec2::new(-half - out, height - drop + rise),
+            Vec2::new(0.0, ridge + rise),
+            Vec2::new(half + out, height - drop + rise),
+        ]
     };
     m.at(yard.yaw(0.25 * TURN)).slab(&eaves(0.03), &eaves(0.33), length + 0.7);
 }
