@@ -89,18 +89,22 @@ impl Target<'_> {
 fn nearest<S: Simd>(simd: S, target: &Target, packet: &Packet, t_min: f32, scratch: &mut Scratch) -> [Nearest; LANES] {
     let mut best = [(f64::INFINITY, NONE); LANES];
     let entries: &[u32] = if target.bvh.nodes.is_empty() { &[] } else { &[0] };
-    by_axis(packet, |axis, t_max| {
-        let on_hit = |triangle: u32, lane: usize, t: f64| {
-            // Of two surfaces at one distance the first in the tree's order wins, whatever the order of the search.
-            if t > f64::from(t_min) && (t, triangle) < best[lane] && is_solid(target, packet, triangle, lane, t) {
-                best[lane] = (t, triangle);
-            }
-            // Rounded up, or an equal distance would be culled.
-            (best[lane].0.min(f64::from(packet.t_max[lane])) as f32).next_up()
-        };
-        let search = Search { target, packet, entries, shadow: false };
-        search.run(simd, axis, t_max, &mut scratch.stack, on_hit);
-    });
+    by_axis(
+        packet,
+        #[inline(always)]
+        |axis, t_max| {
+            let on_hit = |triangle: u32, lane: usize, t: f64| {
+                // Of two surfaces at one distance the first in the tree's order wins, whatever the order of the search.
+                if t > f64::from(t_min) && (t, triangle) < best[lane] && is_solid(target, packet, triangle, lane, t) {
+                    best[lane] = (t, triangle);
+                }
+                // Rounded up, or an equal distance would be culled.
+                (best[lane].0.min(f64::from(packet.t_max[lane])) as f32).next_up()
+            };
+            let search = Search { target, packet, entries, shadow: false };
+            search.run(simd, axis, t_max, &mut scratch.stack, on_hit);
+        },
+    );
     best
 }
 
@@ -115,20 +119,24 @@ fn occluded<S: Simd>(
 ) {
     for packet in packets {
         let mut hidden = 0u8;
-        by_axis(packet, |axis, t_max| {
-            let mut last = scratch.last_occluder;
-            let on_hit = |triangle: u32, lane: usize, t: f64| {
-                if t > 0.0 && t < f64::from(packet.t_max[lane]) && is_solid(target, packet, triangle, lane, t) {
-                    hidden |= 1 << lane;
-                    last = Some(triangle);
-                    return f32::NEG_INFINITY;
-                }
-                packet.t_max[lane]
-            };
-            let search = Search { target, packet, entries, shadow: true };
-            search.run(simd, axis, t_max, &mut scratch.stack, on_hit);
-            scratch.last_occluder = last;
-        });
+        by_axis(
+            packet,
+            #[inline(always)]
+            |axis, t_max| {
+                let mut last = scratch.last_occluder;
+                let on_hit = |triangle: u32, lane: usize, t: f64| {
+                    if t > 0.0 && t < f64::from(packet.t_max[lane]) && is_solid(target, packet, triangle, lane, t) {
+                        hidden |= 1 << lane;
+                        last = Some(triangle);
+                        return f32::NEG_INFINITY;
+                    }
+                    packet.t_max[lane]
+                };
+                let search = Search { target, packet, entries, shadow: true };
+                search.run(simd, axis, t_max, &mut scratch.stack, on_hit);
+                scratch.last_occluder = last;
+            },
+        );
         out.push(hidden);
     }
 }
@@ -245,13 +253,12 @@ impl Search<'_> {
         if self.shadow && triangle.is_receiver_only() {
             return;
         }
-        let (inside, edges) = rays.inside::<Z>(simd, triangle);
+        let (inside, unsure) = rays.inside::<Z>(simd, triangle);
         let mut lanes = inside.to_bitmask();
         if lanes == 0 {
             return;
         }
-        let [u, v, w] = edges.map(|e| e.simd_eq(0.0));
-        let unsure = (u | v | w).to_bitmask();
+        let unsure = unsure.to_bitmask();
         while lanes != 0 {
             let lane = lanes.trailing_zeros() as usize;
             lanes &= lanes - 1;
@@ -269,15 +276,15 @@ impl Search<'_> {
 }
 
 impl<S: Simd> Rays<S> {
+    // Arrays are built by hand here: closures in `map` are not always compiled for the instruction set.
     #[inline(always)]
     fn load<const Z: usize>(simd: S, packet: &Packet, t_max: [f32; LANES]) -> Rays<S> {
-        let d = packet.direction.map(|d| f32x8::load_array(simd, d));
-        // A direction of zero becomes tiny: the box's padding keeps what lies in a face inside.
-        let tiny = f32x8::splat(simd, 1e-30);
-        let one = f32x8::splat(simd, 1.0);
+        let [ox, oy, oz] = packet.origin;
+        let [dx, dy, dz] = packet.direction;
+        let d = [f32x8::load_array(simd, dx), f32x8::load_array(simd, dy), f32x8::load_array(simd, dz)];
         Rays {
-            origin: packet.origin.map(|o| f32x8::load_array(simd, o)),
-            reciprocal: d.map(|d| one / d.abs().max(tiny).copysign(d)),
+            origin: [f32x8::load_array(simd, ox), f32x8::load_array(simd, oy), f32x8::load_array(simd, oz)],
+            reciprocal: [reciprocal(simd, d[0]), reciprocal(simd, d[1]), reciprocal(simd, d[2])],
             shear_x: d[(Z + 1) % 3] / d[Z],
             shear_y: d[(Z + 2) % 3] / d[Z],
             t_max: f32x8::load_array(simd, t_max),
@@ -299,17 +306,23 @@ impl<S: Simd> Rays<S> {
         (enter, enter.simd_le(leave * (1.0 + 8.0 * f32::EPSILON)))
     }
 
-    /// The rays that pass inside of the triangle's edges, from either side, and the three edge functions: where one
-    /// came out as zero, only double precision tells [Woop 2013].
+    /// A point in the rays' own spaces, in which they run along +z through the origin.
     #[inline(always)]
-    fn inside<const Z: usize>(&self, simd: S, triangle: &Triangle) -> (mask32x8<S>, [f32x8<S>; 3]) {
+    fn sheared<const Z: usize>(&self, simd: S, p: Vec3) -> (f32x8<S>, f32x8<S>) {
         let (kx, ky) = ((Z + 1) % 3, (Z + 2) % 3);
-        let [a, b, c] = triangle.vertices.map(|v| {
-            let x = f32x8::splat(simd, v[kx]) - self.origin[kx];
-            let y = f32x8::splat(simd, v[ky]) - self.origin[ky];
-            let z = f32x8::splat(simd, v[Z]) - self.origin[Z];
-            (x - self.shear_x * z, y - self.shear_y * z)
-        });
+        let x = f32x8::splat(simd, p[kx]) - self.origin[kx];
+        let y = f32x8::splat(simd, p[ky]) - self.origin[ky];
+        let z = f32x8::splat(simd, p[Z]) - self.origin[Z];
+        (x - self.shear_x * z, y - self.shear_y * z)
+    }
+
+    /// The rays that pass inside of the triangle's edges, from either side, and those for which an edge function came
+    /// out as zero, so that only double precision tells [Woop 2013].
+    #[inline(always)]
+    fn inside<const Z: usize>(&self, simd: S, triangle: &Triangle) -> (mask32x8<S>, mask32x8<S>) {
+        let a = self.sheared::<Z>(simd, triangle.vertices[0]);
+        let b = self.sheared::<Z>(simd, triangle.vertices[1]);
+        let c = self.sheared::<Z>(simd, triangle.vertices[2]);
         let u = c.0 * b.1 - c.1 * b.0;
         let v = a.0 * c.1 - a.1 * c.0;
         let w = b.0 * a.1 - b.1 * a.0;
@@ -317,6 +330,12 @@ impl<S: Simd> Rays<S> {
         let lowest = u.min(v).min(w);
         let highest = u.max(v).max(w);
         let inside = (lowest.simd_ge(zero) | highest.simd_le(zero)) & self.t_max.simd_gt(f32::NEG_INFINITY);
-        (inside, [u, v, w])
+        (inside, u.simd_eq(zero) | v.simd_eq(zero) | w.simd_eq(zero))
     }
+}
+
+/// A direction of zero becomes tiny: the box's padding keeps what lies in a face inside.
+#[inline(always)]
+fn reciprocal<S: Simd>(simd: S, d: f32x8<S>) -> f32x8<S> {
+    f32x8::splat(simd, 1.0) / d.abs().max(f32x8::splat(simd, 1e-30)).copysign(d)
 }

@@ -114,7 +114,7 @@ impl Tracer {
     /// A point just off the surface on the normal's side, so close that nothing fits between, yet above the plane
     /// after rounding. The offset covers the rounding of the point and of the triangle's vertices, axis by axis: in a
     /// floor at y = 0 neither rounds, and the offset is zero but for a last bit.
-    pub(crate) fn off_surface(&self, hit: &Hit) -> Vec3 {
+    pub fn off_surface(&self, hit: &Hit) -> Vec3 {
         let triangle = &self.geometry.triangles[hit.id as usize];
         let largest = triangle.vertices.iter().fold(hit.position.abs(), |m, v| m.max(v.abs().as_dvec3()));
         let offset = hit.normal.abs().dot(largest) * f64::from(f32::EPSILON) + largest.max_element() * 1e-12;
