@@ -1,0 +1,261 @@
+//! Error against milliseconds as SVG, drawn by hand so that its colours follow the page's scheme and its points are
+//! links; a plotting library's SVG knows neither.
+
+use maud::{Markup, html};
+
+use super::text;
+
+const WIDTH: f64 = 960.0;
+const HEIGHT: f64 = 460.0;
+const LEFT: f64 = 72.0;
+const RIGHT: f64 = WIDTH - 28.0;
+const TOP: f64 = 20.0;
+const BOTTOM: f64 = HEIGHT - 56.0;
+/// Width of a label's letter and height of its line, in the units above.
+const LETTER: (f64, f64) = (7.8, 16.0);
+/// A logarithm has no zero: what costs or errs nothing is drawn at this.
+const FLOOR: f64 = 1e-5;
+
+/// One technique in the plot.
+pub struct Point {
+    /// Its label.
+    pub label: String,
+    /// Where the page tells more.
+    pub link: String,
+    /// GPU milliseconds.
+    pub ms: f64,
+    /// Average error in [0, 1].
+    pub error: f64,
+}
+
+/// A logarithmic axis from `low` to `high`, drawn from `start` to `end`.
+struct Axis {
+    low: f64,
+    high: f64,
+    start: f64,
+    end: f64,
+}
+
+impl Axis {
+    fn around(values: impl Iterator<Item = f64>, start: f64, end: f64) -> Self {
+        let (low, high) = values.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
+        // Room for the labels, and at least half a decade in all, or one technique would have no scale.
+        let margin = (high / low).powf(0.12).max(1.8);
+        Self { low: low / margin, high: high * margin, start, end }
+    }
+
+    fn place(&self, value: f64) -> f64 {
+        self.start + (value / self.low).ln() / (self.high / self.low).ln() * (self.end - self.start)
+    }
+
+    /// Round values: as many mantissas a decade as leave the axis readable.
+    fn ticks(&self) -> Vec<f64> {
+        let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
+        let with = |mantissas: &[f64]| -> Vec<f64> {
+            let all = decades.clone().flat_map(|d| mantissas.iter().map(move |m| m * 10f64.powi(d)));
+            all.filter(|v| (self.low..=self.high).contains(v)).collect()
+        };
+        let choices: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]];
+        choices.iter().map(|m| with(m)).find(|ticks| ticks.len() >= 4).unwrap_or_else(|| with(choices[2]))
+    }
+}
+
+/// A box of the picture that is taken: left, top, right, bottom.
+#[derive(Clone, Copy)]
+struct Area(f64, f64, f64, f64);
+
+impl Area {
+    fn overlap(&self, other: &Area) -> f64 {
+        let width = self.2.min(other.2) - self.0.max(other.0);
+        let height = self.3.min(other.3) - self.1.max(other.1);
+        width.max(0.0) * height.max(0.0)
+    }
+
+    fn outside(&self) -> f64 {
+        let beyond = |v: f64| v.max(0.0);
+        beyond(LEFT - self.0) + beyond(self.2 - WIDTH + 8.0) + beyond(TOP - self.1) + beyond(self.3 - BOTTOM)
+    }
+
+    /// The nearest place of the box.
+    fn nearest(&self, (x, y): (f64, f64)) -> (f64, f64) {
+        (x.clamp(self.0, self.2), y.clamp(self.1, self.3))
+    }
+
+    fn contains(&self, (x, y): (f64, f64)) -> bool {
+        (self.0..self.2).contains(&x) && (self.1..self.3).contains(&y)
+    }
+}
+
+/// Where a label may stand: near its dot on the right, else in any direction, else farther off.
+fn candidates((x, y): (f64, f64), label: &str) -> impl Iterator<Item = (f64, Area)> {
+    let half = (label.chars().count() as f64 * LETTER.0 / 2.0, LETTER.1 / 2.0);
+    [11.0, 22.0, 36.0, 54.0, 76.0].into_iter().flat_map(move |distance| {
+        (0..16).map(move |i| {
+            // 0, 180, then up and down, then what lies between: the order in which a reader looks for a label.
+            let turn = f64::from([0, 8, 12, 4, 14, 2, 10, 6, 15, 1, 9, 7, 13, 3, 11, 5][i as usize]) / 16.0;
+            let (sin, cos) = (turn * std::f64::consts::TAU).sin_cos();
+            let cx = x + cos * (distance + cos.abs() * half.0 + sin.abs() * half.1);
+            let cy = y + sin * (distance + cos.abs() * half.0.min(12.0) + sin.abs() * half.1);
+            let area = Area(cx - half.0, cy - half.1, cx + half.0, cy + half.1);
+            (distance + 0.3 * f64::from(i), area)
+        })
+    })
+}
+
+/// Puts every label where it, and the line that leads to it, cover the least of the others; a few rounds, because the
+/// first labels do not know of the last.
+fn place_labels(dots: &[(f64, f64)], labels: &[&str]) -> Vec<Area> {
+    const ROUNDS: usize = 4;
+    let mut taken: Vec<Area> = dots.iter().map(|(x, y)| Area(x - 7.0, y - 7.0, x + 7.0, y + 7.0)).collect();
+    let nowhere = Area(f64::MIN, f64::MIN, f64::MIN, f64::MIN);
+    taken.resize(2 * dots.len(), nowhere);
+    for (i, label) in (0..ROUNDS).flat_map(|_| labels.iter().enumerate()) {
+        let own = dots.len() + i;
+        let cost = |(distance, area): &(f64, Area)| {
+            let (dot, end) = (dots[i], area.nearest(dots[i]));
+            let line =
+                (1..8).map(|k| f64::from(k) / 8.0).map(|t| (dot.0 + (end.0 - dot.0) * t, dot.1 + (end.1 - dot.1) * t));
+            let line: Vec<_> = line.collect();
+            let others = taken.iter().enumerate().filter(|(other, _)| *other != own && *other != i);
+            let covered = others.map(|(_, other)| {
+                5.0 * area.overlap(other) + 60.0 * line.iter().filter(|p| other.contains(**p)).count() as f64
+            });
+            covered.sum::<f64>() + 5.0 * area.overlap(&taken[i]) + area.outside() * 100.0 + distance
+        };
+        if let Some((_, area)) = candidates(dots[i], label).min_by(|a, b| cost(a).total_cmp(&cost(b))) {
+            taken[own] = area;
+        }
+    }
+    taken.split_off(dots.len())
+}
+
+/// Whether nothing else is both faster and nearer to the truth.
+fn is_best(point: &Point, points: &[Point]) -> bool {
+    let beats = |other: &Point| {
+        other.ms <= point.ms && other.error <= point.error && (other.ms < point.ms || other.error < point.error)
+    };
+    !points.iter().any(beats)
+}
+
+/// The plot; points that nothing beats in both are filled and joined.
+pub fn scatter(points: &[Point]) -> Markup {
+    let (ms, error) = (|p: &Point| p.ms.max(FLOOR), |p: &Point| p.error.max(FLOOR));
+    let x = Axis::around(points.iter().map(ms), LEFT, RIGHT);
+    let y = Axis::around(points.iter().map(error), BOTTOM, TOP);
+    let dots: Vec<_> = points.iter().map(|p| (x.place(ms(p)), y.place(error(p)))).collect();
+    let labels: Vec<_> = points.iter().map(|p| p.label.as_str()).collect();
+    let areas = place_labels(&dots, &labels);
+    let best: Vec<bool> = points.iter().map(|p| is_best(p, points)).collect();
+    html! {
+        svg.plot viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img"
+            aria-label="Average error against GPU milliseconds, both logarithmic; lower left is better" {
+            (grid(&x, &y))
+            polyline.front points=(front(&dots, &best)) {}
+            @for (dot, area) in dots.iter().zip(&areas) { (leader(*dot, area)) }
+            @for (((point, dot), area), best) in points.iter().zip(&dots).zip(&areas).zip(&best) {
+                (drawn(point, *dot, area, *best))
+            }
+        }
+    }
+}
+
+/// The staircase from the fastest to the nearest.
+fn front(dots: &[(f64, f64)], best: &[bool]) -> String {
+    let mut steps: Vec<_> = dots.iter().zip(best).filter(|(_, best)| **best).map(|(dot, _)| *dot).collect();
+    steps.sort_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+    let mut path = String::new();
+    let mut last: Option<f64> = None;
+    for (x, y) in steps {
+        if let Some(y) = last {
+            path += &format!("{x:.1},{y:.1} ");
+        }
+        path += &format!("{x:.1},{y:.1} ");
+        last = Some(y);
+    }
+    path
+}
+
+fn grid(x: &Axis, y: &Axis) -> Markup {
+    let label = |v: f64| format!("{}", (v * 1e9).round() / 1e9);
+    html! {
+        @for tick in x.ticks() {
+            @let at = format!("{:.1}", x.place(tick));
+            line.grid x1=(at) x2=(at) y1=(TOP) y2=(BOTTOM) {}
+            text.tick x=(at) y=(BOTTOM + 20.0) text-anchor="middle" { (label(tick)) }
+        }
+        @for tick in y.ticks() {
+            @let at = y.place(tick);
+            line.grid x1=(LEFT) x2=(RIGHT) y1=(format!("{at:.1}")) y2=(format!("{at:.1}")) {}
+            text.tick x=(LEFT - 10.0) y=(format!("{:.1}", at + 4.0)) text-anchor="end" { (label(tick)) }
+        }
+        text.axis x=(RIGHT) y=(BOTTOM + 42.0) text-anchor="end" { "GPU milliseconds a frame, logarithmic →" }
+        text.axis x=(LEFT) y=(BOTTOM + 42.0) { "↙ better" }
+        text.axis transform=(format!("translate(16 {TOP}) rotate(-90)")) text-anchor="end" {
+            "average error, logarithmic →"
+        }
+    }
+}
+
+/// A line to a label that stands off.
+fn leader((x, y): (f64, f64), area: &Area) -> Markup {
+    let (tx, ty) = area.nearest((x, y));
+    html! {
+        @if (tx - x).hypot(ty - y) > 16.0 {
+            line.leader x1=(format!("{x:.1}")) y1=(format!("{y:.1}")) x2=(format!("{tx:.1}")) y2=(format!("{ty:.1}")) {}
+        }
+    }
+}
+
+fn drawn(point: &Point, (x, y): (f64, f64), area: &Area, best: bool) -> Markup {
+    let (cx, cy) = ((area.0 + area.2) / 2.0, (area.1 + area.3) / 2.0);
+    let name = if best { "dot best" } else { "dot" };
+    html! {
+        a href=(point.link) {
+            title { (point.label) ": error " (text::figure(point.error)) ", " (text::ms(point.ms)) " ms" }
+            circle class=(name) cx=(format!("{x:.1}")) cy=(format!("{y:.1}")) r="6" {}
+            text.label x=(format!("{cx:.1}")) y=(format!("{:.1}", cy + 4.5)) text-anchor="middle" { (point.label) }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(ms: f64, error: f64) -> Point {
+        Point { label: "adaptive-sampling".into(), link: "#".into(), ms, error }
+    }
+
+    #[test]
+    fn ticks_are_round_and_few() {
+        for (low, high) in [(0.1, 0.13), (0.01, 0.2), (0.3, 900.0), (1e-5, 1.0)] {
+            let axis = Axis::around([low, high].into_iter(), 0.0, 1.0);
+            let ticks = axis.ticks();
+            assert!((2..=12).contains(&ticks.len()), "{low}..{high}: {ticks:?}");
+            assert!(ticks.iter().all(|t| (0.0..=1.0).contains(&axis.place(*t))));
+        }
+    }
+
+    #[test]
+    fn labels_of_a_crowd_do_not_cover_each_other() {
+        let dots: Vec<_> =
+            (0..20).map(|i| (400.0 + f64::from(i % 5) * 40.0, 160.0 + f64::from(i / 5) * 40.0)).collect();
+        let areas = place_labels(&dots, &["smooth-pcss"; 20]);
+        let covered: f64 =
+            (0..20).flat_map(|i| (0..i).map(move |j| (i, j))).map(|(i, j)| areas[i].overlap(&areas[j])).sum();
+        assert!(covered < 100.0, "{covered}"); // of 27 456 square units of labels
+    }
+
+    #[test]
+    fn what_is_beaten_in_both_is_not_the_best() {
+        let points = [point(1.0, 0.1), point(2.0, 0.05), point(3.0, 0.07), point(1.0, 0.2)];
+        let best: Vec<_> = points.iter().map(|p| is_best(p, &points)).collect();
+        assert_eq!(best, [true, true, false, false]);
+    }
+
+    #[test]
+    fn zero_and_one_point_have_a_place() {
+        let svg = scatter(&[point(0.0, 0.0)]).into_string();
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    }
+}
