@@ -89,22 +89,16 @@ impl Target<'_> {
 fn nearest<S: Simd>(simd: S, target: &Target, packet: &Packet, t_min: f32, scratch: &mut Scratch) -> [Nearest; LANES] {
     let mut best = [(f64::INFINITY, NONE); LANES];
     let entries: &[u32] = if target.bvh.nodes.is_empty() { &[] } else { &[0] };
-    by_axis(
-        packet,
-        #[inline(always)]
-        |axis, t_max| {
-            let on_hit = |triangle: u32, lane: usize, t: f64| {
-                // Of two surfaces at one distance the first in the tree's order wins, whatever the order of the search.
-                if t > f64::from(t_min) && (t, triangle) < best[lane] && is_solid(target, packet, triangle, lane, t) {
-                    best[lane] = (t, triangle);
-                }
-                // Rounded up, or an equal distance would be culled.
-                (best[lane].0.min(f64::from(packet.t_max[lane])) as f32).next_up()
-            };
-            let search = Search { target, packet, entries, shadow: false };
-            search.run(simd, axis, t_max, &mut scratch.stack, on_hit);
-        },
-    );
+    let mut on_hit = |triangle: u32, lane: usize, t: f64| {
+        let in_reach = t > f64::from(t_min) && t < f64::from(packet.t_max[lane]);
+        // Of two surfaces at one distance the first in the tree's order wins, whatever the order of the search.
+        if in_reach && (t, triangle) < best[lane] && is_solid(target, packet, triangle, lane, t) {
+            best[lane] = (t, triangle);
+        }
+        // Rounded up, or an equal distance would be culled.
+        packet.t_max[lane].min((best[lane].0 as f32).next_up())
+    };
+    Search { target, packet, entries, first: None, shadow: false }.run(simd, &mut scratch.stack, &mut on_hit);
     best
 }
 
@@ -119,24 +113,16 @@ fn occluded<S: Simd>(
 ) {
     for packet in packets {
         let mut hidden = 0u8;
-        by_axis(
-            packet,
-            #[inline(always)]
-            |axis, t_max| {
-                let mut last = scratch.last_occluder;
-                let on_hit = |triangle: u32, lane: usize, t: f64| {
-                    if t > 0.0 && t < f64::from(packet.t_max[lane]) && is_solid(target, packet, triangle, lane, t) {
-                        hidden |= 1 << lane;
-                        last = Some(triangle);
-                        return f32::NEG_INFINITY;
-                    }
-                    packet.t_max[lane]
-                };
-                let search = Search { target, packet, entries, shadow: true };
-                search.run(simd, axis, t_max, &mut scratch.stack, on_hit);
-                scratch.last_occluder = last;
-            },
-        );
+        let first = scratch.last_occluder;
+        let mut on_hit = |triangle: u32, lane: usize, t: f64| {
+            if t > 0.0 && t < f64::from(packet.t_max[lane]) && is_solid(target, packet, triangle, lane, t) {
+                hidden |= 1 << lane;
+                scratch.last_occluder = Some(triangle);
+                return f32::NEG_INFINITY;
+            }
+            packet.t_max[lane]
+        };
+        Search { target, packet, entries, first, shadow: true }.run(simd, &mut scratch.stack, &mut on_hit);
         out.push(hidden);
     }
 }
@@ -151,29 +137,13 @@ fn is_solid(target: &Target, packet: &Packet, triangle: u32, lane: usize, t: f64
     })
 }
 
-/// Calls `run` with an axis that is good for the shear of some lanes, and with the ends of the rays, the other lanes'
-/// being negative infinity, until every used lane has been served. Coherent rays are served in one call.
-#[inline(always)]
-fn by_axis(packet: &Packet, mut run: impl FnMut(usize, [f32; LANES])) {
-    let mut waiting = packet.t_max;
-    while let Some(lane) = (0..LANES).find(|&i| waiting[i] > f32::NEG_INFINITY) {
-        let axis = packet.direction(lane).abs().max_position();
-        let mut now = [f32::NEG_INFINITY; LANES];
-        for i in 0..LANES {
-            let d = packet.direction(i).abs();
-            if i == lane || d[axis] >= 0.5 * d.max_element() {
-                now[i] = std::mem::replace(&mut waiting[i], f32::NEG_INFINITY);
-            }
-        }
-        run(axis, now);
-    }
-}
-
 struct Search<'a> {
     target: &'a Target<'a>,
     packet: &'a Packet,
     entries: &'a [u32],
-    /// Leave out triangles that cast no shadow.
+    /// A triangle to try before all others.
+    first: Option<u32>,
+    /// Leave out triangles that cast no shadow, and stop when all rays have hit something.
     shadow: bool,
 }
 
@@ -187,60 +157,78 @@ struct Rays<S: Simd> {
 }
 
 impl Search<'_> {
+    /// Serves the lanes in groups that share an axis for their shear; coherent rays are one group.
+    ///
+    /// `on_hit` gets triangle, lane and distance, and gives the ray's new end.
     #[inline(always)]
-    fn run<S: Simd>(
-        &self,
-        simd: S,
-        axis: usize,
-        t_max: [f32; LANES],
-        stack: &mut Vec<u32>,
-        on_hit: impl FnMut(u32, usize, f64) -> f32,
-    ) {
-        match axis {
-            0 => self.run_along::<S, 0>(simd, t_max, stack, on_hit),
-            1 => self.run_along::<S, 1>(simd, t_max, stack, on_hit),
-            _ => self.run_along::<S, 2>(simd, t_max, stack, on_hit),
+    fn run<S: Simd>(&self, simd: S, stack: &mut Vec<u32>, on_hit: &mut impl FnMut(u32, usize, f64) -> f32) {
+        let used = f32x8::load_array(simd, self.packet.t_max);
+        let none = f32x8::splat(simd, f32::NEG_INFINITY);
+        let [dx, dy, dz] = self.packet.direction;
+        let d = [f32x8::load_array(simd, dx), f32x8::load_array(simd, dy), f32x8::load_array(simd, dz)];
+        let size = [d[0].abs(), d[1].abs(), d[2].abs()];
+        let enough = size[0].max(size[1]).max(size[2]) * 0.5;
+        let mut waiting = used.simd_gt(none);
+        while waiting.any_true() {
+            let lane = waiting.to_bitmask().trailing_zeros() as usize;
+            let axis = self.packet.direction(lane).abs().max_position();
+            let group = size[axis].simd_ge(enough) & waiting;
+            waiting &= !group;
+            let t_max = group.select(used, none);
+            match axis {
+                0 => self.walk::<S, 0>(simd, Rays::new::<0>(simd, self.packet, d, t_max), stack, on_hit),
+                1 => self.walk::<S, 1>(simd, Rays::new::<1>(simd, self.packet, d, t_max), stack, on_hit),
+                _ => self.walk::<S, 2>(simd, Rays::new::<2>(simd, self.packet, d, t_max), stack, on_hit),
+            }
         }
     }
 
-    /// Depth first, of two children the one first that the first ray meets first.
+    /// Depth first; where the order matters, of two children the one first that some ray meets first.
     #[inline(always)]
-    fn run_along<S: Simd, const Z: usize>(
+    fn walk<S: Simd, const Z: usize>(
         &self,
         simd: S,
-        t_max: [f32; LANES],
+        mut rays: Rays<S>,
         stack: &mut Vec<u32>,
-        mut on_hit: impl FnMut(u32, usize, f64) -> f32,
+        on_hit: &mut impl FnMut(u32, usize, f64) -> f32,
     ) {
-        let mut rays = Rays::load::<Z>(simd, self.packet, t_max);
+        if let Some(k) = self.first
+            && self.test::<S, Z>(simd, k, &mut rays, on_hit)
+            && rays.are_done()
+        {
+            return;
+        }
         let nodes = &self.target.bvh.nodes;
         stack.clear();
         stack.extend_from_slice(self.entries);
         while let Some(index) = stack.pop() {
             let node = &nodes[index as usize];
             if node.count > 0 {
+                let mut hit = false;
                 for k in node.first..node.first + node.count {
-                    self.test::<S, Z>(simd, k, &mut rays, &mut on_hit);
+                    hit |= self.test::<S, Z>(simd, k, &mut rays, on_hit);
                 }
-                if self.shadow && !rays.t_max.simd_gt(f32::NEG_INFINITY).any_true() {
+                if self.shadow && hit && rays.are_done() {
                     return;
                 }
                 continue;
             }
             let (t0, hit0) = rays.meets(simd, &nodes[node.first as usize]);
             let (t1, hit1) = rays.meets(simd, &nodes[node.first as usize + 1]);
-            let near_last = t1.simd_lt(t0).any_true();
-            let (first, second) = if near_last { (0, 1) } else { (1, 0) };
-            let hit = [hit0.any_true(), hit1.any_true()];
-            for child in [first, second] {
-                if hit[child] {
-                    stack.push(node.first + child as u32);
+            match (hit0.any_true(), hit1.any_true()) {
+                (true, true) => {
+                    let near = u32::from(!self.shadow && t1.simd_lt(t0).any_true());
+                    stack.push(node.first + 1 - near);
+                    stack.push(node.first + near);
                 }
+                (true, false) => stack.push(node.first),
+                (false, true) => stack.push(node.first + 1),
+                (false, false) => {}
             }
         }
     }
 
-    /// Eight rays against one triangle.
+    /// Eight rays against one triangle; true if `on_hit` was asked.
     #[inline(always)]
     fn test<S: Simd, const Z: usize>(
         &self,
@@ -248,15 +236,15 @@ impl Search<'_> {
         index: u32,
         rays: &mut Rays<S>,
         on_hit: &mut impl FnMut(u32, usize, f64) -> f32,
-    ) {
+    ) -> bool {
         let triangle = &self.target.geometry.triangles[index as usize];
         if self.shadow && triangle.is_receiver_only() {
-            return;
+            return false;
         }
         let (inside, unsure) = rays.inside::<Z>(simd, triangle);
         let mut lanes = inside.to_bitmask();
         if lanes == 0 {
-            return;
+            return false;
         }
         let unsure = unsure.to_bitmask();
         while lanes != 0 {
@@ -272,23 +260,28 @@ impl Search<'_> {
                 rays.t_max.as_mut_array()[lane] = on_hit(index, lane, t);
             }
         }
+        true
     }
 }
 
 impl<S: Simd> Rays<S> {
     // Arrays are built by hand here: closures in `map` are not always compiled for the instruction set.
     #[inline(always)]
-    fn load<const Z: usize>(simd: S, packet: &Packet, t_max: [f32; LANES]) -> Rays<S> {
+    fn new<const Z: usize>(simd: S, packet: &Packet, d: [f32x8<S>; 3], t_max: f32x8<S>) -> Rays<S> {
         let [ox, oy, oz] = packet.origin;
-        let [dx, dy, dz] = packet.direction;
-        let d = [f32x8::load_array(simd, dx), f32x8::load_array(simd, dy), f32x8::load_array(simd, dz)];
         Rays {
             origin: [f32x8::load_array(simd, ox), f32x8::load_array(simd, oy), f32x8::load_array(simd, oz)],
             reciprocal: [reciprocal(simd, d[0]), reciprocal(simd, d[1]), reciprocal(simd, d[2])],
             shear_x: d[(Z + 1) % 3] / d[Z],
             shear_y: d[(Z + 2) % 3] / d[Z],
-            t_max: f32x8::load_array(simd, t_max),
+            t_max,
         }
+    }
+
+    /// True if no ray needs anything more.
+    #[inline(always)]
+    fn are_done(&self) -> bool {
+        !self.t_max.simd_gt(f32::NEG_INFINITY).any_true()
     }
 
     /// Where the rays enter the box, and which do: never misses a box that a ray touches [Ize 2013].

@@ -2,7 +2,7 @@
 
 use crate::bvh::Bvh;
 use crate::geometry::Geometry;
-use crate::packet::{NONE, Packet, Scratch, Target};
+use crate::packet::{LANES, NONE, Packet, Scratch, Target};
 use antumbra_scene::Scene;
 use fearless_simd::Level;
 use glam::{DVec3, Vec3};
@@ -75,11 +75,22 @@ impl Tracer {
 
     /// True if a shadow caster lies strictly between the two points.
     pub fn occluded(&self, from: Vec3, to: Vec3) -> bool {
-        let mut packet = Packet::unused();
-        packet.set(0, from, to - from, 1.0, NONE);
-        let mut out = Vec::with_capacity(1);
-        self.target().occluded(&[packet], self.root(), &mut Scratch::default(), &mut out);
-        out[0] & 1 != 0
+        self.occluded_all(&[[from, to]])[0]
+    }
+
+    /// [`Tracer::occluded`] for many segments; fastest where eight in a row run close together.
+    pub fn occluded_all(&self, segments: &[[Vec3; 2]]) -> Vec<bool> {
+        let (mut scratch, mut packets, mut hidden) = (Scratch::default(), Vec::new(), Vec::new());
+        let mut out = Vec::with_capacity(segments.len());
+        // In blocks, so that the packets stay in the nearest cache.
+        for block in segments.chunks(16 * LANES) {
+            packets.clear();
+            packets.extend(block.chunks(LANES).map(packet_of));
+            hidden.clear();
+            self.target().occluded(&packets, self.root(), &mut scratch, &mut hidden);
+            out.extend((0..block.len()).map(|i| hidden[i / LANES] >> (i % LANES) & 1 != 0));
+        }
+        out
     }
 
     pub(crate) fn target(&self) -> Target<'_> {
@@ -120,4 +131,13 @@ impl Tracer {
         let offset = hit.normal.abs().dot(largest) * f64::from(f32::EPSILON) + largest.max_element() * 1e-12;
         (hit.position + hit.normal * offset).as_vec3()
     }
+}
+
+/// Up to eight segments.
+fn packet_of(segments: &[[Vec3; 2]]) -> Packet {
+    let mut packet = Packet::unused();
+    for (lane, [from, to]) in segments.iter().enumerate() {
+        packet.set(lane, *from, to - from, 1.0, NONE);
+    }
+    packet
 }
