@@ -13,7 +13,7 @@ pub(super) const ATRIUM: BuiltinInfo = BuiltinInfo {
     title: "A court with arcades",
     description: "Two floors of columns and arches under the open sky, with banners and awnings of folded cloth",
     parameters: &[Parameter::count("bays", 7, 3, 60, "arches along the court")],
-    triangles: 0,
+    triangles: 182_418,
     build,
 };
 
@@ -60,10 +60,11 @@ fn build(values: &Values) -> Scene {
     stage.solid("roof", tiles, |m| roof(m, half));
     stage.solid("floors", stone, |m| floors(m, half));
     arcades(&mut stage, stone, half, bays);
+    stage.solid("fountain", stone, |m| fountain(m.at(Frame::at(-0.7, 0.0, half.y - 9.4))));
     hangings(&mut stage, cloths, half, bays);
     stage.finish(
         camera([0.9, 1.75, half.y - 0.6], [-0.45, 3.0, half.y - 9.0], 62.0, 0.1, 200.0),
-        light([5.5, 19.0, half.y - 5.0], [-1.6, 1.5, half.y - 8.5], 2.6, 2.6),
+        light([3.6, 20.0, half.y - 6.5], [-0.9, 1.0, half.y - 8.0], 3.2, 3.2),
     )
 }
 
@@ -203,6 +204,39 @@ fn pier(m: &mut MeshBuilder, storey: &Storey) {
     m.block(0.66, storey.top, 0.66);
     m.block(0.78, 0.16, 0.78);
     m.at(Frame::at(0.0, storey.spring - 0.1, 0.0)).block(0.76, 0.12, 0.76);
+}
+
+/// An eight-cornered basin with a bowl on a stem.
+fn fountain(m: &mut MeshBuilder) {
+    m.lathe(
+        &[
+            (0.0, 0.0),
+            (1.15, 0.0),
+            (1.15, 0.12),
+            (1.0, 0.14),
+            (1.0, 0.46),
+            (1.1, 0.5),
+            (1.1, 0.56),
+            (0.86, 0.56),
+            (0.84, 0.2),
+            (0.0, 0.2),
+        ],
+        8,
+    );
+    let stem = [(0.0, 0.15), (0.2, 0.15), (0.14, 0.3), (0.09, 0.6), (0.12, 0.85), (0.07, 0.98)];
+    let bowl = [
+        (0.2, 1.02),
+        (0.42, 1.14),
+        (0.52, 1.26),
+        (0.54, 1.27),
+        (0.5, 1.27),
+        (0.38, 1.17),
+        (0.05, 1.1),
+        (0.05, 1.3),
+        (0.0, 1.34),
+    ];
+    let profile: Vec<(f32, f32)> = stem.into_iter().chain(bowl).collect();
+    m.lathe(&profile, 64);
 }
 
 /// Banners in front of the upper arches and awnings across the court.

@@ -39,7 +39,7 @@ pub(super) const SPHERES: BuiltinInfo = BuiltinInfo {
     title: "Spheres on and over the ground",
     description: "Spheres of several sizes that rest, float and shadow each other: contact, curved receivers",
     parameters: &[Parameter::count("segments", 128, 8, 1024, "quads around each sphere")],
-    triangles: 0,
+    triangles: 322_562,
     build: spheres,
 };
 
@@ -52,7 +52,7 @@ fn over_plane(values: &Values, add: impl FnOnce(&mut Stage, usize)) -> Scene {
     add(&mut stage, shape);
     let edge = values.real("light");
     stage.finish(
-        camera([1.9, 2.1, 3.1], [0.0, 0.35, 0.0], 40.0, 0.1, 60.0),
+        camera([1.9, 2.15, 3.1], [0.0, 0.3, 0.0], 40.0, 0.1, 60.0),
         light([0.0, LIGHT_HEIGHT as f32, 0.0], [0.0, 0.0, 0.0], edge, edge),
     )
 }
@@ -106,6 +106,6 @@ fn spheres(values: &Values) -> Scene {
     }
     stage.finish(
         camera([0.5, 2.5, 4.5], [0.02, 0.48, 0.05], 38.0, 0.1, 80.0),
-        light([-2.8, 4.6, 0.3], [0.0, 0.0, 0.0], 1.0, 1.0),
+        light([-2.8, 4.6, 0.3], [-0.8, 0.0, 0.0], 1.0, 1.0),
     )
 }

@@ -16,7 +16,7 @@ pub(super) const CAGE: BuiltinInfo = BuiltinInfo {
         Parameter::count("wires", 28, 4, 400, "upright wires"),
         Parameter::real("thickness", 3.0, 0.2, 20.0, "diameter of a wire in millimetres"),
     ],
-    triangles: 0,
+    triangles: 39_378,
     build,
 };
 

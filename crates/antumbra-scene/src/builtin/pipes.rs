@@ -1,7 +1,7 @@
 //! A power plant: a steel lattice full of pipes, with tanks beside it.
 
 use super::maths::{Frame, Random, TURN, mix, on_circle, steps};
-use super::piping::{Space, beam, ladder, pipe, railing, route};
+use super::piping::{Space, beam, hang, ladder, pipe, railing, route};
 use super::shapes::MeshBuilder;
 use super::spec::Values;
 use super::stage::{Stage, camera, light};
@@ -17,7 +17,7 @@ pub(super) const PIPES: BuiltinInfo = BuiltinInfo {
         Parameter::count("triangles", 2_000_000, 300_000, 10_000_000, "triangles, kept within 2 %"),
         Parameter::count("seed", 1, 0, 1_000_000, "which plant of its kind"),
     ],
-    triangles: 0,
+    triangles: 2_002_818,
     build,
 };
 
@@ -49,7 +49,7 @@ impl Lattice {
 
     /// True for bays whose floor is a grating; the others are open, so that light falls through.
     fn is_floored(&self, i: usize, level: usize, k: usize) -> bool {
-        i == ACROSS - 1 || (i + 2 * level + k) % 3 == 0
+        i == ACROSS - 1 || (i + 2 * level + k).is_multiple_of(3)
     }
 }
 
@@ -71,8 +71,8 @@ fn build(values: &Values) -> Scene {
     tanks(&mut stage, paints[0], yellow);
     fill(&mut stage, paints, &lattice, budget, &mut random);
     stage.finish(
-        camera([10.5, 5.0, 17.0], [-0.2, 5.6, 0.0], 50.0, 0.1, 900.0),
-        light([-34.0, 52.0, 26.0], [0.0, 2.0, -8.0], 3.0, 3.0),
+        camera([12.5, 7.0, 18.0], [0.1, 5.6, -1.0], 48.0, 0.1, 900.0),
+        light([-34.0, 52.0, 26.0], [-5.0, 2.0, -7.0], 3.0, 3.0),
     )
 }
 
@@ -94,6 +94,7 @@ fn frame(m: &mut MeshBuilder, lattice: &Lattice) {
             }
         }
         braces(m, lattice, k);
+        joists(m, lattice, k);
     }
 }
 
@@ -109,6 +110,19 @@ fn braces(m: &mut MeshBuilder, lattice: &Lattice, k: usize) {
         if k == 0 && level > 0 {
             m.rod(lattice.point(0, level, 0), lattice.point(1, level + 1, 0), 0.045, 10);
             m.rod(lattice.point(1, level, 0), lattice.point(0, level + 1, 0), 0.04, 10);
+        }
+    }
+}
+
+/// Light beams under every floor of a row, from which pipes hang.
+fn joists(m: &mut MeshBuilder, lattice: &Lattice, k: usize) {
+    for level in (1..=LEVELS).filter(|_| k < lattice.rows) {
+        for i in 0..ACROSS {
+            for third in [1.0, 2.0] {
+                let down = Vec3::new(0.0, -0.01, -BAY * third / 3.0);
+                let (a, b) = (lattice.point(i, level, k) + down, lattice.point(i + 1, level, k) + down);
+                beam(m, a + Vec3::X * 0.1, b - Vec3::X * 0.1, 0.1, 0.2, Vec3::Y);
+            }
         }
     }
 }
@@ -135,16 +149,18 @@ fn gratings(stage: &mut Stage, zinc: usize, lattice: &Lattice) {
     }
 }
 
-/// Railings around every level and ladders between levels.
+/// Railings around every level, each run ending where the next begins, and ladders between levels.
 fn railings(m: &mut MeshBuilder, lattice: &Lattice) {
     for level in 1..=LEVELS {
         let up = Vec3::Y * 0.18;
         for k in 0..lattice.rows {
             railing(m, lattice.point(ACROSS, level, k) + up, lattice.point(ACROSS, level, k + 1) + up);
-            railing(m, lattice.point(0, level, k) + up, lattice.point(0, level, k + 1) + up);
+            railing(m, lattice.point(0, level, k + 1) + up, lattice.point(0, level, k) + up);
         }
         for i in 0..ACROSS {
+            let far = lattice.rows;
             railing(m, lattice.point(i, level, 0) + up, lattice.point(i + 1, level, 0) + up);
+            railing(m, lattice.point(i + 1, level, far) + up, lattice.point(i, level, far) + up);
         }
     }
     for k in (0..lattice.rows).step_by(4) {
@@ -209,6 +225,7 @@ fn vessel(m: &mut MeshBuilder, middle: Vec3, radius: f32, length: f32) {
 fn fill(stage: &mut Stage, paints: [usize; 5], lattice: &Lattice, budget: usize, random: &mut Random) {
     let mut space = free_space(lattice);
     let mut meshes: Vec<MeshBuilder> = paints.iter().map(|_| MeshBuilder::new()).collect();
+    let mut hangers = MeshBuilder::new();
     let start = stage.triangle_count();
     let mut spent = start;
     let mut failures = 0;
@@ -222,10 +239,13 @@ fn fill(stage: &mut Stage, paints: [usize; 5], lattice: &Lattice, budget: usize,
             continue;
         };
         let mesh = &mut meshes[random.below(paints.len())];
-        let before = mesh.triangle_count();
+        let before = mesh.triangle_count() + hangers.triangle_count();
         pipe(mesh, &route);
-        spent += mesh.triangle_count() - before;
+        hang(&mut hangers, &mut space, &route, LEVEL);
+        spent += mesh.triangle_count() + hangers.triangle_count() - before;
     }
+    let steel = stage.color(0.22, 0.27, 0.32);
+    stage.solid("hangers", steel, |m| *m = hangers);
     for (mesh, paint) in meshes.into_iter().zip(paints) {
         stage.solid("pipes", paint, |m| *m = mesh);
     }
@@ -245,6 +265,10 @@ fn free_space(lattice: &Lattice) -> Space {
         for k in 0..=lattice.rows {
             let z = lattice.z(k);
             space.take(Vec3::new(far.x, y - 0.2, z - 0.15), Vec3::new(0.0, y + 0.2, z + 0.15));
+            for third in [1.0, 2.0] {
+                let z = z - BAY * third / 3.0;
+                space.take(Vec3::new(far.x, y - 0.12, z - 0.06), Vec3::new(0.0, y + 0.1, z + 0.06));
+            }
         }
     }
     for k in 0..=lattice.rows {

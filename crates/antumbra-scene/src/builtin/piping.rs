@@ -94,13 +94,32 @@ pub(super) fn route(space: &mut Space, radius: f32, legs: usize, random: &mut Ra
     Some(Route { corners, radius })
 }
 
-/// Half-open axes of the world.
-trait Axes {
-    const AXES: [IVec3; 3];
-}
-
-impl Axes for IVec3 {
-    const AXES: [IVec3; 3] = [IVec3::X, IVec3::Y, IVec3::Z];
+/// Rods from which the level legs of a route hang, or posts on which they stand where the ground is nearer. Only
+/// those are made that meet nothing on their way. `level` is the distance between ceilings.
+pub(super) fn hang(m: &mut MeshBuilder, space: &mut Space, route: &Route, level: f32) {
+    const SPACING: f32 = 1.5;
+    let clear = Vec3::new(0.02, 0.0, 0.02);
+    for leg in route.corners.windows(2).filter(|leg| leg[0].y == leg[1].y) {
+        let length = (leg[1] - leg[0]).length();
+        let count = (length / SPACING).ceil() as usize;
+        for i in 0..count {
+            let p = leg[0].lerp(leg[1], (i as f32 + 0.5) / count as f32);
+            let ceiling = (p.y / level).ceil() * level - 0.2;
+            let stands = p.y < 0.45 * level;
+            let (low, high) = if stands { (0.0, p.y - route.radius) } else { (p.y + route.radius, ceiling) };
+            let outside = Vec3::new(0.0, if stands { CELL } else { 0.0 }, 0.0);
+            let (min, max) = (Vec3::new(p.x, low, p.z) - clear, Vec3::new(p.x, high, p.z) + clear);
+            // The cells that the pipe itself takes do not count.
+            let gap = Vec3::Y * (CELL + 0.04);
+            let (from, to) = if stands { (min + outside, max - gap) } else { (min + gap, max) };
+            if high - low > 0.1 && (to.y <= from.y || space.is_free(from, to)) {
+                space.take(from, to);
+                let thick = if stands { 0.05 } else { 0.016 };
+                m.at(Frame::at(p.x, low - 0.02, p.z)).cylinder(thick, high - low + 0.04, 12);
+                m.at(Frame::along(p, leg[1] - leg[0]).shift(0.0, -0.03, 0.0)).cylinder(route.radius + 0.012, 0.06, 24);
+            }
+        }
+    }
 }
 
 /// The pipe of a route: straight legs, round elbows, flanges where the two meet and along the way.
@@ -194,11 +213,11 @@ pub(super) fn ladder(m: &mut MeshBuilder, frame: Frame, height: f32) {
     }
 }
 
-/// Handrails and posts from `a` to `b`.
+/// Handrails and posts from `a` to `b`; the post at `b` belongs to the next run.
 pub(super) fn railing(m: &mut MeshBuilder, a: Vec3, b: Vec3) {
     m.at(Frame::IDENTITY);
     let pieces = ((b - a).length() / 1.2).ceil() as usize;
-    for i in 0..=pieces {
+    for i in 0..pieces {
         let p = a.lerp(b, i as f32 / pieces as f32);
         m.rod(p - Vec3::Y * 0.05, p + Vec3::Y * 1.1, 0.022, 10);
     }

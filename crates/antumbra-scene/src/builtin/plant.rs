@@ -17,7 +17,7 @@ pub(super) const PLANT: BuiltinInfo = BuiltinInfo {
         Parameter::count("leaves", 26, 1, 2000, "number of leaves"),
         Parameter::count("seed", 1, 0, 1_000_000, "which plant of its kind"),
     ],
-    triangles: 0,
+    triangles: 10_498,
     build,
 };
 
@@ -38,7 +38,7 @@ fn build(values: &Values) -> Scene {
     stage.ground(20.0, floor);
     stage.solid("pot", clay, pot);
     stage.solid("soil", soil, |m| {
-        m.at(Frame::at(0.0, EARTH - 0.1, 0.0)).lathe(&[(0.0, 0.0), (0.19, 0.0), (0.2, 0.1), (0.0, 0.115)], 64);
+        m.at(Frame::at(0.0, EARTH - 0.1, 0.0)).lathe(&[(0.0, 0.0), (0.19, 0.0), (0.21, 0.1), (0.0, 0.115)], 64);
     });
     let mut random = Random::new(values.seed());
     let stalks: Vec<Vec<Vec3>> =

@@ -3,7 +3,7 @@
 use super::maths::Frame;
 use super::shapes::MeshBuilder;
 use crate::{Camera, Instance, Material, Mesh, RectLight, Scene};
-use glam::{Vec2, Vec3};
+use glam::{Affine3A, Vec2, Vec3};
 
 /// Collects materials, meshes and instances.
 #[derive(Default)]
@@ -49,10 +49,7 @@ impl Stage {
         let mesh = self.mesh("ground", material, |m| {
             m.sheet(1, 1, |x, z| Vec3::new(edge * x as f32 - half, 0.0, half - edge * z as f32));
         });
-        self.place(mesh, Frame::IDENTITY);
-        if let Some(ground) = self.instances.last_mut() {
-            ground.receiver_only = true;
-        }
+        self.instances.push(Instance { mesh, world_from_object: Affine3A::IDENTITY, receiver_only: true });
     }
 
     pub fn triangle_count(&self) -> usize {

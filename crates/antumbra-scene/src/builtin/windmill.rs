@@ -13,7 +13,7 @@ pub(super) const WINDMILL: BuiltinInfo = BuiltinInfo {
     title: "A windmill",
     description: "Lattice sails over a field: fine casters far from their receiver, a solid tower close to it",
     parameters: &[Parameter::real("angle", 22.0, -360.0, 360.0, "turn of the sails in degrees")],
-    triangles: 0,
+    triangles: 6270,
     build,
 };
 
@@ -57,7 +57,7 @@ fn build(values: &Values) -> Scene {
     stage.solid("joinery", timber, |m| cottage_openings(m, yard));
     stage.solid("fence", timber, paddock);
     stage.finish(
-        camera([11.0, 10.0, 32.0], [2.4, 8.0, 0.0], 44.0, 0.1, 400.0),
+        camera([11.0, 10.0, 32.0], [3.0, 7.9, 0.0], 45.0, 0.1, 400.0),
         light([-25.0, 42.0, 20.0], [0.0, 4.0, 0.0], 2.0, 2.0),
     )
 }
@@ -179,7 +179,7 @@ fn roof(m: &mut MeshBuilder, yard: Frame) {
             Vec2::new(half + out, height - drop + rise),
         ]
     };
-    m.at(yard.yaw(0.25 * TURN)).slab(&eaves(0.03), &eaves(0.33), length + 0.7);
+    m.at(yard.yaw(0.25 * TURN)).slab(&eaves(-0.04), &eaves(0.26), length + 0.7);
 }
 
 /// A post-and-rail fence in front, along a gentle bend.
