@@ -40,6 +40,7 @@ fn demo(more: &[String]) -> Result<(), Failure> {
     // `--bin` and no `--package`: features are then those of the whole workspace, so that `test` builds nothing twice.
     let compare = cargo(["run", "--bin", "antumbra", "--", "compare", "builtin:fence"])
         .args(["-t", "hard", "-t", "pcf", "-t", "pcss", "-o", "target/demo"])
+        .args(["--light-samples", "256"]) // a quarter of the usual rays: nobody waits long for a demo
         .args(more);
     Step::new("demo", compare).run()?;
     Ok(())

@@ -18,7 +18,8 @@ pub fn truth(report: &Report, pictures: &Pictures) -> Markup {
                 (gallery(report, 0, pictures))
                 p.note {
                     "What every figure is measured by: " (text::count(truth.light_samples.into()))
-                    " shadow rays a pixel, shared among " (truth.pixel_samples) " sub-pixels. Its own error is estimated at "
+                    " shadow rays a pixel, shared among " (truth.pixel_samples) " sub-pixels. "
+                    "Its own error is estimated at "
                     (text::figure(truth.error_estimate)) "; differences below that mean nothing."
                 }
             }
@@ -130,13 +131,18 @@ fn cost(entry: &Entry) -> Markup {
     let own: Vec<&Pass> = entry.passes.iter().filter(|pass| !pass.host).collect();
     let all: f64 = own.iter().map(|pass| pass.ms).sum();
     let width = |pass: &Pass| format!("width:{:.2}%", 100.0 * pass.ms / all.max(f64::MIN_POSITIVE));
-    let own_index = |pass: &Pass| own.iter().position(|p| std::ptr::eq(*p, pass)).unwrap_or(0) % 8;
+    let swatch = |pass: &Pass| match own.iter().position(|p| std::ptr::eq(*p, pass)) {
+        Some(i) => format!("swatch c{}", i % 8),
+        None => "swatch h".into(),
+    };
     html! {
         div {
             h4 { "Cost" }
             p.total { b { (text::ms(entry.total_ms)) } " ms" b { (text::megabytes(entry.total_bytes)) } " MB" }
             div.passes-bar aria-hidden="true" {
-                @for (i, pass) in own.iter().enumerate() { i class=(format!("c{}", i % 8)) style=(width(pass)) title=(pass.name) {} }
+                @for (i, pass) in own.iter().enumerate() {
+                    i class=(format!("c{}", i % 8)) style=(width(pass)) title=(pass.name) {}
+                }
             }
             table.passes {
                 thead { tr { th { "Pass" } th { "ms" } th { "MB" } } }
@@ -144,7 +150,7 @@ fn cost(entry: &Entry) -> Markup {
                     @for pass in &entry.passes {
                         tr.host[pass.host] {
                             th scope="row" {
-                                @if pass.host { i.swatch.h {} } @else { i class=(format!("swatch c{}", own_index(pass))) {} }
+                                i class=(swatch(pass)) {}
                                 (pass.name) @if pass.host { small { " host's, not counted" } }
                             }
                             td { (text::ms(pass.ms)) } td { (text::megabytes(pass.bytes)) }

@@ -55,7 +55,8 @@ fn header(report: &Report) -> Markup {
                 span { "Antumbra" }
                 nav {
                     a href="#figures" { "Figures" } a href="#plot" { "Cost" } a href="#compare" { "Compare" }
-                    a href="#techniques" { "Techniques" } a href="results.json" { "JSON" } a href="results.csv" { "CSV" }
+                    a href="#techniques" { "Techniques" }
+                    a href="results.json" { "JSON" } a href="results.csv" { "CSV" }
                     button #scheme type="button" title="Light or dark" aria-label="Light or dark" { "◐" }
                 }
             }
@@ -63,7 +64,10 @@ fn header(report: &Report) -> Markup {
             dl.facts {
                 div { dt { "Triangles" } dd { (text::count(report.triangles)) } }
                 div { dt { "Pictures" } dd { (report.width) " × " (report.height) } }
-                div.wide { dt { "Adapter" } dd { (report.adapter) @if report.software { " " span.tag { "software" } } } }
+                div.wide {
+                    dt { "Adapter" }
+                    dd { (report.adapter) @if report.software { " " span.tag { "software" } } }
+                }
                 div.wide {
                     dt { "Truth" }
                     dd {
@@ -102,12 +106,15 @@ fn lead(report: &Report, labels: &[String]) -> Markup {
     html! {
         h2 { "Figures" }
         @if nearest == fastest {
-            p.lead { b { (near) } " errs by " b { (near_error) } " on average in the shadow and takes " b { (near_ms) "\u{a0}ms" } "." }
+            p.lead {
+                b { (near) } " errs by " b { (near_error) } " on average in the shadow and takes "
+                b { (near_ms) "\u{a0}ms" } "."
+            }
         } @else {
             p.lead {
-                b { (near) } " is nearest to the truth: it errs by " b { (near_error) } " on average in the shadow and takes "
-                b { (near_ms) "\u{a0}ms" } ". The fastest is " b { (fast) } ", " b { (fast_ms) "\u{a0}ms" } " at an error of "
-                b { (fast_error) } "."
+                b { (near) } " is nearest to the truth: it errs by " b { (near_error) } " on average in the shadow and "
+                "takes " b { (near_ms) "\u{a0}ms" } ". The fastest is " b { (fast) } ", " b { (fast_ms) "\u{a0}ms" }
+                " at an error of " b { (fast_error) } "."
             }
         }
     }
@@ -279,7 +286,10 @@ fn comparison(report: &Report, labels: &[String]) -> Markup {
             output #probe { "Point at the picture to read the values under the cursor." }
             div #legend hidden { (cards::color_bar()) }
         }
-        p.hint { "Drag to wipe. Double-click or Ctrl + wheel zooms; when zoomed, drag off the line to move. Arrow keys wipe too." }
+        p.hint {
+            "Drag to wipe. Double-click or Ctrl + wheel zooms; when zoomed, drag off the line to move. "
+            "Arrow keys wipe too."
+        }
         noscript { p.notice { "The comparison needs JavaScript; tables and pictures below do not." } }
     }
 }
