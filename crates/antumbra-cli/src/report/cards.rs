@@ -67,7 +67,7 @@ fn gallery(report: &Report, index: usize, pictures: &Pictures) -> Markup {
         @for (kind, file, png) in &files {
             figure {
                 img.small[report.width < 400] id=(format!("t{index}-{kind}")) data-open=(index) data-kind=(kind)
-                    width=(report.width) height=(report.height) decoding="async"
+                    width=(report.width) height=(report.height)
                     alt=(format!("{} of {}", name(kind), pictures.slug))
                     src=(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png)));
                 figcaption {
