@@ -44,7 +44,7 @@ fn build(values: &Values) -> Scene {
     stage.solid("ball", clay, |m| m.at(Frame::at(-1.0, 0.16, 1.0)).sphere(0.16, 64));
     stage.finish(
         camera([2.5, 2.7, 4.4], [-0.1, 0.28, 0.45], 42.0, 0.1, 80.0),
-        light([5.5, 8.5, -12.0], [0.6, 0.0, -1.5], 2.1, 2.1),
+        light([5.5, 8.5, -12.0], [1.2, 0.0, -2.8], 2.1, 2.1),
     )
 }
 

@@ -81,15 +81,7 @@ pub(super) const SPECIES: [Species; 5] = [
 pub(super) fn grow(species: &Species, random: &mut Random) -> (MeshBuilder, MeshBuilder) {
     let mut wood = MeshBuilder::new();
     let trunk = trunk(species, random);
-    let flare = |i: usize| {
-        if i == 0 {
-            1.7
-        } else if i == 1 {
-            1.15
-        } else {
-            1.0
-        }
-    };
+    let flare = |i: usize| [1.7, 1.15].get(i).copied().unwrap_or(1.0);
     let taper = |i: usize| mix(species.trunk, 0.02, power(i as f32 / (trunk.len() - 1) as f32, 0.9));
     wood.tube(&trunk, 10, |i| flare(i) * taper(i));
     let mut twigs: Vec<Vec<Vec3>> = Vec::new();

@@ -140,7 +140,7 @@ fn lattice(m: &mut MeshBuilder) {
     for x in [-0.45, 0.6, 1.15, 1.75] {
         let path: Vec<f32> = steps(1.45, REACH, 9).collect();
         for pair in path.windows(2) {
-            m.bar(at(x, pair[0]), at(x, pair[1] + 0.01), 0.06, 0.045, Vec3::Z);
+            m.bar(at(x, pair[0]), at(x, pair[1]), 0.06, 0.045, Vec3::Z);
         }
     }
 }
