@@ -66,10 +66,11 @@ fn points_and_lines_are_left_out() {
 
 #[test]
 fn nodes_pass_their_transforms_on() {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
     let mut file = Builder::triangle();
     file.json["nodes"] = json!([
         {"translation": [10, 0, 0], "scale": [2, 2, 2], "children": [1, 2]},
-        {"mesh": 0, "rotation": [0.0, 0.0, 0.70710678, 0.70710678]},
+        {"mesh": 0, "rotation": [0.0, 0.0, half, half]},
         {"mesh": 0, "matrix": [-1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,5,1]},
     ]);
     let model = read(&file);
