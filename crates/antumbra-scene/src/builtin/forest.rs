@@ -14,7 +14,7 @@ pub(super) const FOREST: BuiltinInfo = BuiltinInfo {
     description: "Leaves far over a sunflecked ground: many small casters, instanced trees, up to 5 million triangles",
     parameters: &[
         Parameter::count("trees", 80, 1, 540, "number of trees, of 9194 triangles each"),
-        Parameter::count("seed", 1, 0, 1_000_000, "which forest of its kind"),
+        Parameter::count("seed", 4, 0, 1_000_000, "which forest of its kind"),
     ],
     triangles: 782_030,
     build,
