@@ -98,7 +98,6 @@ pub(crate) struct Batch {
     pub sampler: wgpu::Sampler,
     pub masked: bool,
     pub textured: bool,
-    pub first_item: u32,
     pub item_count: u32,
 }
 
@@ -253,7 +252,6 @@ impl<'a> CastersBuilder<'a> {
             sampler: sampler.clone(),
             masked: layout.alpha_cutoff > 0.0,
             textured: layout.textured != 0,
-            first_item: layout.first_item,
             item_count: layout.item_count,
         });
     }

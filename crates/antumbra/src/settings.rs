@@ -146,8 +146,8 @@ fn did_you_mean(nearest: &Option<&'static str>) -> String {
 /// The name among `names` that is most like `asked`, if any is alike at all.
 pub fn nearest(asked: &str, names: impl Iterator<Item = &'static str>) -> Option<&'static str> {
     names
-        .map(|n| (strsim::jaro_winkler(&asked.to_lowercase(), n), n))
-        .filter(|(likeness, _)| *likeness > 0.6)
+        .map(|n| (strsim::normalized_damerau_levenshtein(&asked.to_lowercase(), n), n))
+        .filter(|(likeness, _)| *likeness > 0.4)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, n)| n)
 }

@@ -2,7 +2,7 @@
 
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use std::collections::BTreeMap;
-use wesl::{ModulePath, VirtualResolver, Wesl};
+use wesl::{ManglerKind, ModulePath, VirtualResolver, Wesl};
 
 include!(concat!(env!("OUT_DIR"), "/shader_sources.rs"));
 
@@ -119,6 +119,8 @@ impl Program {
         }
         resolver.add_module(module_path("package::host"), key.structs.as_str().into());
         let mut linker = Wesl::new("").set_custom_resolver(resolver);
+        // Names are unique over all modules (a clash does not validate), so bindings keep theirs.
+        linker.set_mangler(ManglerKind::None);
         linker.set_missing_feature_behavior(false).use_stripping(true);
         for feature in &key.features {
             linker.set_feature(feature, true);
@@ -175,7 +177,9 @@ mod tests {
         all += &frame::FrameUniform::wgsl();
         all += &passes::culling::MapView::wgsl();
         all += &passes::geometry_buffer::ViewUniform::wgsl();
+        all += &passes::depth_pyramid::PyramidUniform::wgsl();
         all += &techniques::pcf::PcfUniform::wgsl();
+        all += &techniques::pcss::PcssUniform::wgsl();
         all
     }
 

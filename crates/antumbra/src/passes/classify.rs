@@ -1,1 +1,70 @@
-//! x
+//! Which pixels need a filter at all: lit, dark and turned-away pixels are answered at once, penumbra pixels are listed.
+
+use crate::frame::{Frame, FrameUniform};
+use crate::passes::{depth_map::DepthMap, depth_pyramid::DepthPyramid};
+use crate::recorder::{Recorder, Work, dispatch};
+use crate::resource::storage_buffer;
+use crate::shader::ShaderKey;
+use crate::technique::Memory;
+use crate::{Error, Gpu, bindings};
+
+/// The pixels in penumbra, for an indirect dispatch of 64 threads a workgroup; see `shaders/penumbra_list.wesl`.
+pub struct PenumbraList {
+    /// Indirect arguments, the count, then the pixels.
+    pub buffer: wgpu::Buffer,
+    size: [u32; 2],
+}
+
+impl PenumbraList {
+    /// Room for every pixel.
+    pub fn new(gpu: &Gpu, size: [u32; 2]) -> PenumbraList {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        PenumbraList { buffer: storage_buffer(gpu, "penumbra pixels", 16 + 8 * pixels), size }
+    }
+
+    /// Makes a list in `slot` unless one for a picture of this size is there.
+    pub fn ensure<'a>(slot: &'a mut Option<PenumbraList>, gpu: &Gpu, size: [u32; 2]) -> &'a PenumbraList {
+        if !slot.as_ref().is_some_and(|l| l.size == size) {
+            *slot = Some(PenumbraList::new(gpu, size));
+        }
+        slot.as_ref().expect("just made")
+    }
+
+    /// Writes the visibility of known pixels and lists the others.
+    pub fn record(
+        &self,
+        recorder: &mut Recorder,
+        frame: &Frame,
+        map: &DepthMap,
+        pyramid: &DepthPyramid,
+    ) -> Result<(), Error> {
+        let key = ShaderKey::new("passes::classify").with::<FrameUniform>();
+        let classify = recorder.gpu.compute_pipeline(&key, "classify_pixels")?;
+        let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
+        recorder.encoder.clear_buffer(&self.buffer, 0, Some(16));
+        let set = bindings! {
+            frame: &frame.uniform,
+            geometry_depth: &frame.geometry.depth,
+            geometry_normal: &frame.geometry.normal,
+            depth_map: &map.texture,
+            depth_pyramid: &pyramid.texture,
+            visibility: &frame.visibility,
+            penumbra: &self.buffer,
+        };
+        let [width, height] = frame.geometry.size;
+        recorder.compute_pass("pixel classification", |gpu, pass| {
+            pass.set_pipeline(&classify.pipeline);
+            pass.set_bind_group(0, &classify.bind_group(gpu, 0, set), &[]);
+            dispatch(pass, &classify, Work::Threads([width, height, 1]));
+            pass.set_pipeline(&finish.pipeline);
+            pass.set_bind_group(0, &finish.bind_group(gpu, 0, set), &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+        });
+        Ok(())
+    }
+
+    /// GPU memory by pass.
+    pub fn memory(&self) -> Memory {
+        Memory::new("pixel classification", self.buffer.size())
+    }
+}

@@ -1,1 +1,76 @@
-//! x
+//! A pyramid over a depth map: what lies below a node is bounded, and averaged, by one read.
+
+use crate::passes::depth_map::DepthMap;
+use crate::recorder::{Recorder, Work, dispatch};
+use crate::resource::{Texture, uniform};
+use crate::shader::{HostStruct, ShaderKey};
+use crate::technique::Memory;
+use crate::{Error, Gpu, bindings, gpu_struct};
+
+gpu_struct! {
+    /// What a level is made with.
+    pub(crate) struct PyramidUniform {
+        map_near: f32,
+    }
+}
+
+/// Levels over a depth map, from half its size down to one texel. Each node holds the smallest, the largest and the mean
+/// inverse distance below it (1/metres; 0 for nothing) and the share of its texels that hold a caster.
+pub struct DepthPyramid {
+    /// `Rgba32Float` with a full chain of mips; its level 0 is half as wide as the map.
+    pub texture: Texture,
+    /// One view a level.
+    levels: Vec<wgpu::TextureView>,
+    uniform: wgpu::Buffer,
+}
+
+impl DepthPyramid {
+    /// A pyramid over a map of `size` texels a side.
+    pub fn new(gpu: &Gpu, size: u32) -> DepthPyramid {
+        let half = size.div_ceil(2).max(1);
+        let mips = 32 - half.leading_zeros();
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        let texture = Texture::new(gpu, "depth pyramid", [half; 2], mips, wgpu::TextureFormat::Rgba32Float, usage);
+        DepthPyramid {
+            levels: (0..mips).map(|m| texture.mip(m)).collect(),
+            uniform: uniform(gpu, "pyramid", &PyramidUniform { map_near: 1.0 }),
+            texture,
+        }
+    }
+
+    /// Makes a pyramid in `slot` unless one for a map of this size is there.
+    pub fn ensure<'a>(slot: &'a mut Option<DepthPyramid>, gpu: &Gpu, size: u32) -> &'a DepthPyramid {
+        let half = size.div_ceil(2).max(1);
+        if !slot.as_ref().is_some_and(|p| p.texture.texture.width() == half) {
+            *slot = Some(DepthPyramid::new(gpu, size));
+        }
+        slot.as_ref().expect("just made")
+    }
+
+    /// Reduces a map whose frustum begins at `map_near` metres.
+    pub fn record(&self, recorder: &mut Recorder, map: &DepthMap, map_near: f32) -> Result<(), Error> {
+        recorder.gpu.queue.write_buffer(&self.uniform, 0, &PyramidUniform { map_near }.uniform_bytes());
+        let key = ShaderKey::new("passes::depth_pyramid").with::<PyramidUniform>();
+        let first = recorder.gpu.compute_pipeline(&key.clone().feature("first", true), "reduce")?;
+        let next = recorder.gpu.compute_pipeline(&key, "reduce")?;
+        recorder.compute_pass("depth pyramid", |gpu, pass| {
+            for (m, level) in self.levels.iter().enumerate() {
+                let size = (self.texture.texture.width() >> m).max(1);
+                let (pipeline, set) = if m == 0 {
+                    (&first, bindings! { step: &self.uniform, source_map: &map.texture, level: level }.to_vec())
+                } else {
+                    (&next, bindings! { step: &self.uniform, source_level: &self.levels[m - 1], level: level }.to_vec())
+                };
+                pass.set_pipeline(&pipeline.pipeline);
+                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, &set), &[]);
+                dispatch(pass, pipeline, Work::Threads([size, size, 1]));
+            }
+        });
+        Ok(())
+    }
+
+    /// GPU memory by pass.
+    pub fn memory(&self) -> Memory {
+        Memory::new("depth pyramid", self.texture.bytes())
+    }
+}

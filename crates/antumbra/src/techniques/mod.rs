@@ -4,6 +4,7 @@ use crate::technique::{TechniqueInfo, entry};
 
 pub mod hard;
 pub mod pcf;
+pub mod pcss;
 
 /// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
-pub const TECHNIQUES: &[TechniqueInfo] = &[entry::<hard::Hard>(), entry::<pcf::Pcf>()];
+pub const TECHNIQUES: &[TechniqueInfo] = &[entry::<hard::Hard>(), entry::<pcf::Pcf>(), entry::<pcss::Pcss>()];

@@ -74,7 +74,7 @@ impl Describe for Pcf {
         // The kernel ends at two standard deviations.
         let value = PcfUniform { side: n, deviation: (n as f32 / 4.0).max(0.25), shift: 0.5 * (n - 1) as f32 };
         Ok(Pcf {
-            filter: gpu.compute_pipeline(&key, "filter")?,
+            filter: gpu.compute_pipeline(&key, "filter_pixels")?,
             kernel: uniform(gpu, "pcf kernel", &value),
             comparison: gpu.device.create_sampler(&wgpu::SamplerDescriptor {
                 label: Some("shadow comparison"),

@@ -1,1 +1,94 @@
-//! x
+//! Percentage-closer soft shadows [Fernando 2005]: search the blockers, estimate the penumbra from the light's size by
+//! similar triangles, filter with that width. No constant but the light's size in metres.
+
+use crate::frame::FrameUniform;
+use crate::passes::{classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid};
+use crate::pipeline::ComputePipeline;
+use crate::recorder::{Recorder, Work};
+use crate::resource::uniform;
+use crate::shader::ShaderKey;
+use crate::technique::{About, Describe, Memory, Technique};
+use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
+use std::sync::Arc;
+
+crate::settings! {
+    /// Settings of [`Pcss`].
+    pub struct PcssSettings {
+        /// Shadow map, texels a side.
+        map: u32 = 2048, Kind::Integer { min: 16, max: 16384 };
+        /// Widest blocker search, in nodes of the depth pyramid a side.
+        search: u32 = 16, Kind::Integer { min: 2, max: 256 };
+        /// Widest filter, in nodes of the depth pyramid a side.
+        filter: u32 = 16, Kind::Integer { min: 2, max: 256 };
+    }
+}
+
+gpu_struct! {
+    /// Nodes a side.
+    pub(crate) struct PcssUniform {
+        search: f32,
+        filter_width: f32,
+    }
+}
+
+/// Shadow of a rectangular light whose penumbra widens with the distance from the occluder.
+pub struct Pcss {
+    settings: PcssSettings,
+    soften: Arc<ComputePipeline>,
+    uniform: wgpu::Buffer,
+    map: Option<DepthMap>,
+    pyramid: Option<DepthPyramid>,
+    list: Option<PenumbraList>,
+}
+
+impl Describe for Pcss {
+    type Settings = PcssSettings;
+    const ABOUT: About = About {
+        name: "pcss",
+        title: "Percentage-closer soft shadows",
+        source: "Fernando 2005",
+        summary: "one map; blockers are taken for a plane at their mean distance; no grain, nothing to tune",
+    };
+
+    fn make(gpu: &Gpu, settings: PcssSettings) -> Result<Self, Error> {
+        let key = ShaderKey::new("techniques::pcss::soften").with::<FrameUniform>().with::<PcssUniform>();
+        let value = PcssUniform { search: settings.search as f32, filter_width: settings.filter as f32 };
+        Ok(Pcss {
+            soften: gpu.compute_pipeline(&key, "soften")?,
+            uniform: uniform(gpu, "pcss", &value),
+            settings,
+            map: None,
+            pyramid: None,
+            list: None,
+        })
+    }
+}
+
+impl Technique for Pcss {
+    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+        let gpu = recorder.gpu;
+        let map = DepthMap::ensure(&mut self.map, gpu, self.settings.map, &frame.casters)?;
+        let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
+        let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
+        map.record(recorder, &frame.casters, frame.map_clip_from_world())?;
+        pyramid.record(recorder, map, frame.frustum.near)?;
+        list.record(recorder, frame, map, pyramid)?;
+        let set = bindings! {
+            frame: &frame.uniform,
+            geometry_depth: &frame.geometry.depth,
+            geometry_normal: &frame.geometry.normal,
+            depth_map: &map.texture,
+            depth_pyramid: &pyramid.texture,
+            penumbra_pixels: &list.buffer,
+            pcss: &self.uniform,
+            visibility: &frame.visibility,
+        };
+        recorder.compute("blocker search and filter", &self.soften, set, Work::Indirect(&list.buffer, 0));
+        Ok(())
+    }
+
+    fn memory(&self) -> Vec<Memory> {
+        let map = self.map.iter().flat_map(DepthMap::memory);
+        map.chain(self.pyramid.iter().map(DepthPyramid::memory)).chain(self.list.iter().map(PenumbraList::memory)).collect()
+    }
+}
