@@ -12,7 +12,6 @@ pub mod ply;
 mod polygon;
 
 use crate::{Aabb, Camera, Instance, Material, Mesh, RectLight, SceneError};
-use glam::Affine3A;
 
 /// Gives the bytes of a file that the imported file refers to, by the name it uses.
 pub type ReadFile<'a> = dyn FnMut(&str) -> std::io::Result<Vec<u8>> + 'a;
@@ -80,7 +79,7 @@ impl Model {
     #[cfg(any(feature = "obj", feature = "ply"))]
     pub(crate) fn of_meshes(name: &str, meshes: Vec<Mesh>, materials: Vec<Material>) -> Model {
         let instances = (0..meshes.len())
-            .map(|mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY, receiver_only: false })
+            .map(|mesh| Instance { mesh, world_from_object: glam::Affine3A::IDENTITY, receiver_only: false })
             .collect();
         Model { name: name.to_string(), meshes, materials, instances, camera: None, light: None }
     }
@@ -88,7 +87,7 @@ impl Model {
     /// Takes in another model's meshes and materials and returns its instances, renumbered and not yet placed. Its
     /// camera and light count only where there is none yet.
     #[cfg(feature = "scene-file")]
-    pub(crate) fn absorb(&mut self, other: Model, place: &Affine3A) -> Vec<Instance> {
+    pub(crate) fn absorb(&mut self, other: Model, place: &glam::Affine3A) -> Vec<Instance> {
         let (mesh_base, material_base) = (self.meshes.len(), self.materials.len());
         self.materials.extend(other.materials);
         self.meshes.extend(other.meshes.into_iter().map(|m| Mesh { material: m.material + material_base, ..m }));
