@@ -19,7 +19,7 @@ impl Cutout {
             uvs,
             factor: material.base_color.w,
             cutoff: material.alpha_cutoff.unwrap_or(0.0),
-            texture: material.texture.clone(),
+            texture: material.texture.clone().filter(|t| t.width > 0 && t.height > 0),
         }
     }
 

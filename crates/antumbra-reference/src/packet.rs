@@ -130,10 +130,10 @@ fn occluded<S: Simd>(
 /// Is the triangle there where the ray meets it, or cut out?
 #[inline(always)]
 fn is_solid(target: &Target, packet: &Packet, triangle: u32, lane: usize, t: f64) -> bool {
-    let t_ = &target.geometry.triangles[triangle as usize];
-    t_.cutout().is_none_or(|c| {
+    let surface = &target.geometry.triangles[triangle as usize];
+    surface.cutout().is_none_or(|c| {
         let p = packet.origin(lane).as_dvec3() + packet.direction(lane).as_dvec3() * t;
-        target.geometry.cutouts[c].is_solid(exact::barycentric(t_, p))
+        target.geometry.cutouts[c].is_solid(exact::barycentric(surface, p))
     })
 }
 
