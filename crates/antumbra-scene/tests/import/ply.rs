@@ -142,6 +142,7 @@ fn what_is_wrong_is_said_with_its_place() {
         ("1 1 0", "3 0 1 -2", ["face 0", "index -2"]),
         ("1 1 0", "3 0 1 0.5", ["line 15", "0.5 is not an index"]),
         ("1 1 0", "-3 0 1 2", ["line 15", "-3 is not the length of a list"]),
+        ("1 1 0", "1e39 0 1 2", ["line 15", "numbers needs"]),
         ("1 1 0", "3 0 1", ["line 16", "cut off"]),
         ("1 1 0", "2 0 1 2", ["a.ply", "three corners"]),
     ] {

@@ -97,7 +97,9 @@ impl<'a> Body<'a> {
         if value < 0.0 || value.fract() != 0.0 {
             return Err(self.malformed(format!("{value} is not the length of a list")));
         }
-        self.check_rest(value as u128 * self.least_size(item.size()) as u128, || format!("a list of {value} numbers"))?;
+        self.check_rest((value as u128).saturating_mul(self.least_size(item.size()) as u128), || {
+            format!("a list of {value} numbers")
+        })?;
         Ok(value as usize)
     }
 
