@@ -261,7 +261,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let path = arguments.next().unwrap_or("shadow.ppm".to_owned());
     let (_, picture) = pollster::block_on(render(&technique))?;
     let rgb = picture.chunks_exact(4).flat_map(|p| &p[..3]).copied();
-    std::fs::write(&path, format!("P6\n{SIZE} {SIZE}\n255\n").into_bytes().into_iter().chain(rgb).collect::<Vec<u8>>())?;
+    std::fs::write(
+        &path,
+        format!("P6\n{SIZE} {SIZE}\n255\n").into_bytes().into_iter().chain(rgb).collect::<Vec<u8>>(),
+    )?;
     println!("{technique}: {path}");
     Ok(())
 }

@@ -18,7 +18,8 @@ fn scene() -> Scene {
         indices: indices.iter().map(|i| u32::from(*i)).collect(),
         material: 0,
     };
-    let placed = |m: &glam::Mat4| Instance { mesh: 0, world_from_object: Affine3A::from_mat4(*m), receiver_only: false };
+    let placed =
+        |m: &glam::Mat4| Instance { mesh: 0, world_from_object: Affine3A::from_mat4(*m), receiver_only: false };
     Scene {
         name: "boxes".to_owned(),
         meshes: vec![mesh],
@@ -56,7 +57,8 @@ fn a_foreign_renderer_gets_shadows_that_agree_with_the_truth() {
     // The host's shading used it: dark where the truth is dark.
     let luminance = |i: usize| picture[4 * i..4 * i + 3].iter().map(|c| f64::from(*c)).sum::<f64>();
     let mean = |keep: &dyn Fn(f32) -> bool| {
-        let kept: Vec<usize> = (0..truth.valid.len()).filter(|i| truth.valid[*i] && keep(truth.visibility[*i])).collect();
+        let kept: Vec<usize> =
+            (0..truth.valid.len()).filter(|i| truth.valid[*i] && keep(truth.visibility[*i])).collect();
         kept.iter().map(|i| luminance(*i)).sum::<f64>() / kept.len() as f64
     };
     let (dark, lit) = (mean(&|v| v < 0.01), mean(&|v| v > 0.99));

@@ -47,7 +47,7 @@ impl PenumbraList {
             geometry_depth: &frame.geometry.depth,
             geometry_normal: &frame.geometry.normal,
             depth_map: &map.texture,
-            depth_pyramid: &pyramid.texture,
+            pyramid_bounds: &pyramid.bounds,
             visibility: &frame.visibility,
             penumbra: &self.buffer,
         };

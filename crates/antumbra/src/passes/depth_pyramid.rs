@@ -14,13 +14,16 @@ gpu_struct! {
     }
 }
 
-/// Levels over a depth map, from half its size down to one texel. Each node holds the smallest, the largest and the mean
-/// inverse distance below it (1/metres; 0 for nothing) and the share of its texels that hold a caster.
+/// Levels over a depth map, from half its size down to one texel. All values are inverse distances (1/metres; 0 for
+/// nothing). What lies below a node is bounded, and it is told as two layers: an occluder and what is behind it.
 pub struct DepthPyramid {
-    /// `Rgba32Float` with a full chain of mips; its level 0 is half as wide as the map.
-    pub texture: Texture,
+    /// `Rg32Float`, smallest and largest; its level 0 is half as wide as the map.
+    pub bounds: Texture,
+    /// `Rgba32Float`, of the same size: mean of the nearer layer, of the farther, share of the nearer; see
+    /// `shaders/layers.wesl`.
+    pub layers: Texture,
     /// One view a level.
-    levels: Vec<wgpu::TextureView>,
+    levels: Vec<[wgpu::TextureView; 2]>,
     uniform: wgpu::Buffer,
 }
 
@@ -30,18 +33,21 @@ impl DepthPyramid {
         let half = size.div_ceil(2).max(1);
         let mips = 32 - half.leading_zeros();
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        let texture = Texture::new(gpu, "depth pyramid", [half; 2], mips, wgpu::TextureFormat::Rgba32Float, usage);
+        let texture = |label, format| Texture::new(gpu, label, [half; 2], mips, format, usage);
+        let bounds = texture("depth bounds", wgpu::TextureFormat::Rg32Float);
+        let layers = texture("depth layers", wgpu::TextureFormat::Rgba32Float);
         DepthPyramid {
-            levels: (0..mips).map(|m| texture.mip(m)).collect(),
+            levels: (0..mips).map(|m| [bounds.mip(m), layers.mip(m)]).collect(),
             uniform: uniform(gpu, "pyramid", &PyramidUniform { map_near: 1.0 }),
-            texture,
+            bounds,
+            layers,
         }
     }
 
     /// Makes a pyramid in `slot` unless one for a map of this size is there.
     pub fn ensure<'a>(slot: &'a mut Option<DepthPyramid>, gpu: &Gpu, size: u32) -> &'a DepthPyramid {
         let half = size.div_ceil(2).max(1);
-        if !slot.as_ref().is_some_and(|p| p.texture.texture.width() == half) {
+        if !slot.as_ref().is_some_and(|p| p.bounds.texture.width() == half) {
             *slot = Some(DepthPyramid::new(gpu, size));
         }
         slot.as_ref().expect("just made")
@@ -54,15 +60,20 @@ impl DepthPyramid {
         let first = recorder.gpu.compute_pipeline(&key.clone().feature("first", true), "reduce")?;
         let next = recorder.gpu.compute_pipeline(&key, "reduce")?;
         recorder.compute_pass("depth pyramid", |gpu, pass| {
-            for (m, level) in self.levels.iter().enumerate() {
-                let size = (self.texture.texture.width() >> m).max(1);
-                let (pipeline, set) = if m == 0 {
-                    (&first, bindings! { step: &self.uniform, source_map: &map.texture, level: level }.to_vec())
-                } else {
-                    (&next, bindings! { step: &self.uniform, source_level: &self.levels[m - 1], level: level }.to_vec())
+            for (m, [bounds, layers]) in self.levels.iter().enumerate() {
+                let below = &self.levels[m.saturating_sub(1)];
+                let pipeline = if m == 0 { &first } else { &next };
+                let set = bindings! {
+                    step: &self.uniform,
+                    source_map: &map.texture,
+                    source_bounds: &below[0],
+                    source_layers: &below[1],
+                    level_bounds: bounds,
+                    level_layers: layers,
                 };
+                let size = (self.bounds.texture.width() >> m).max(1);
                 pass.set_pipeline(&pipeline.pipeline);
-                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, &set), &[]);
+                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, set), &[]);
                 dispatch(pass, pipeline, Work::Threads([size, size, 1]));
             }
         });
@@ -71,6 +82,6 @@ impl DepthPyramid {
 
     /// GPU memory by pass.
     pub fn memory(&self) -> Memory {
-        Memory::new("depth pyramid", self.texture.bytes())
+        Memory::new("depth pyramid", self.bounds.bytes() + self.layers.bytes())
     }
 }

@@ -78,7 +78,8 @@ impl Technique for Pcss {
             geometry_depth: &frame.geometry.depth,
             geometry_normal: &frame.geometry.normal,
             depth_map: &map.texture,
-            depth_pyramid: &pyramid.texture,
+            pyramid_bounds: &pyramid.bounds,
+            pyramid_layers: &pyramid.layers,
             penumbra_pixels: &list.buffer,
             pcss: &self.uniform,
             visibility: &frame.visibility,
@@ -89,6 +90,8 @@ impl Technique for Pcss {
 
     fn memory(&self) -> Vec<Memory> {
         let map = self.map.iter().flat_map(DepthMap::memory);
-        map.chain(self.pyramid.iter().map(DepthPyramid::memory)).chain(self.list.iter().map(PenumbraList::memory)).collect()
+        map.chain(self.pyramid.iter().map(DepthPyramid::memory))
+            .chain(self.list.iter().map(PenumbraList::memory))
+            .collect()
     }
 }
