@@ -1,0 +1,229 @@
+//! The command line.
+
+use crate::output::{ValuesFile, npy_path, png_path};
+use antumbra::{AdapterChoice, Spec, techniques::TECHNIQUES};
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Real-time soft shadows of area lights, beside the ray-traced truth.
+#[derive(Debug, Parser)]
+#[command(name = "antumbra", version, arg_required_else_help = true, max_term_width = 110)]
+pub struct Cli {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw a scene with one technique
+    Render(RenderArgs),
+    /// Trace the truth: the fraction of the light that each pixel sees
+    Reference(ReferenceArgs),
+    /// Compare techniques with the truth: error, milliseconds and megabytes, as a table and as a report with pictures
+    Compare(CompareArgs),
+    /// List the techniques, their settings and where they come from
+    Techniques(ListArgs),
+    /// List the built-in scenes and their parameters
+    Scenes(ListArgs),
+    /// List this machine's graphics adapters, the best one first
+    Adapters(ListArgs),
+}
+
+/// `antumbra render`.
+#[derive(Debug, Args)]
+#[command(group = clap::ArgGroup::new("outputs").required(true).multiple(true))]
+pub struct RenderArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Picture to write, a .png
+    #[arg(short, long, value_name = "FILE", group = "outputs", value_parser = png_path)]
+    pub output: Option<PathBuf>,
+    /// Technique and its settings: name:key=value,key=value; `antumbra techniques` lists them
+    #[arg(short, long, value_name = "SPEC", default_value = "pcss")]
+    pub technique: Technique,
+    /// Visible fraction of the light at each pixel, to write: .npy (float32, height x width), .exr or .png (16-bit grey)
+    #[arg(long, value_name = "FILE", group = "outputs")]
+    pub visibility: Option<ValuesFile>,
+    /// Milliseconds and bytes by pass, to write as JSON
+    #[arg(long, value_name = "FILE", group = "outputs")]
+    pub stats: Option<PathBuf>,
+    #[command(flatten)]
+    pub gpu: GpuArgs,
+}
+
+/// `antumbra reference`.
+#[derive(Debug, Args)]
+pub struct ReferenceArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Visible fraction of the light at each pixel, to write: .npy (float32, height x width), .exr or .png (16-bit grey)
+    #[arg(long, value_name = "FILE")]
+    pub visibility: ValuesFile,
+    /// Pixels that errors are measured on, to write: .npy (float32, height x width), 1 where the whole pixel is a
+    /// surface that faces the light, else 0
+    #[arg(long, value_name = "FILE", value_parser = npy_path)]
+    pub valid: Option<PathBuf>,
+    #[command(flatten)]
+    pub truth: TruthArgs,
+}
+
+/// `antumbra compare`.
+#[derive(Debug, Args)]
+pub struct CompareArgs {
+    #[command(flatten)]
+    pub scene: SceneArgs,
+    /// Technique and its settings, name:key=value,key=value, any number of times; `all` stands for every technique
+    #[arg(short, long = "technique", value_name = "SPEC", required = true)]
+    pub techniques: Vec<Techniques>,
+    /// Folder of the report, made if need be: index.html, results.json, results.csv, pictures
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub truth: TruthArgs,
+    #[command(flatten)]
+    pub gpu: GpuArgs,
+}
+
+/// `antumbra techniques`, `scenes` and `adapters`.
+#[derive(Debug, Args)]
+pub struct ListArgs {
+    /// Write JSON, for programs
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What is looked at.
+#[derive(Debug, Args)]
+pub struct SceneArgs {
+    /// A .glb, .gltf, .obj or .ply file, a scene file (.toml or .json), or builtin:NAME (`antumbra scenes` lists them)
+    pub scene: String,
+    /// Size of the picture in pixels [default: the scene's own, else 768x768]
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Size of the light in metres, instead of the scene's
+    #[arg(long, value_name = "W[xH]")]
+    pub light_size: Option<LightSize>,
+}
+
+/// What draws.
+#[derive(Debug, Args)]
+pub struct GpuArgs {
+    /// Part of an adapter's name, or its number in `antumbra adapters` [default: the best]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub adapter: Option<AdapterChoice>,
+    /// Frames whose median time counts, after two that warm up
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub frames: u32,
+}
+
+/// How finely the truth is traced, and where it is kept.
+#[derive(Debug, Args)]
+pub struct TruthArgs {
+    /// Shadow rays of a pixel in all, shared among its pixel samples
+    #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    pub light_samples: u32,
+    /// Primary rays of a pixel; a square number gives a regular grid
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    pub pixel_samples: u32,
+    /// Another seed gives other, independent samples
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    /// Folder that keeps traced references [default: antumbra in the user's cache folder: on Linux $XDG_CACHE_HOME, else
+    /// ~/.cache]
+    #[arg(long, value_name = "DIR", env = "ANTUMBRA_CACHE", conflicts_with = "no_cache")]
+    pub cache: Option<PathBuf>,
+    /// Trace anew, and keep nothing
+    #[arg(long)]
+    pub no_cache: bool,
+}
+
+/// A technique with its settings.
+#[derive(Clone)]
+pub struct Technique(pub Spec);
+
+impl std::fmt::Debug for Technique {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0.text)
+    }
+}
+
+impl FromStr for Technique {
+    type Err = antumbra::settings::SpecError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        text.parse().map(Technique)
+    }
+}
+
+/// One technique, or all.
+#[derive(Clone, Debug)]
+pub struct Techniques(pub Vec<Technique>);
+
+impl FromStr for Techniques {
+    type Err = antumbra::settings::SpecError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let all = || TECHNIQUES.iter().map(|t| t.name.parse()).collect();
+        if text == "all" { all() } else { text.parse().map(|t| vec![t]) }.map(Techniques)
+    }
+}
+
+/// Size of a picture in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size(pub [u32; 2]);
+
+impl FromStr for Size {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |t: &str| t.trim().parse::<u32>().ok();
+        let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some([side(w)?, side(h)?]));
+        match sides {
+            Some([0, _] | [_, 0]) => Err("a picture has at least one pixel each way".to_owned()),
+            Some(size) => Ok(Size(size)),
+            None => Err("expected width x height in pixels, such as 1280x720".to_owned()),
+        }
+    }
+}
+
+/// Size of a light in metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSize(pub [f32; 2]);
+
+impl FromStr for LightSize {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (width, height) = text.split_once(['x', 'X']).unwrap_or((text, text));
+        let edge = |t: &str| t.trim().parse::<f32>().ok().filter(|v| (0.0..=1e6).contains(v));
+        let size = edge(width).zip(edge(height)).map(|(w, h)| LightSize([w, h]));
+        size.ok_or_else(|| "expected one or two lengths in metres from 0 to 1000000, such as 0.5 or 1x0.25".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes_are_read() {
+        assert_eq!("12x34".parse(), Ok(Size([12, 34])));
+        for bad in ["", "12", "0x5", "5x0", "-1x5", "1.5x2", "5x", "99999999999x1", "5x5x5"] {
+            assert!(bad.parse::<Size>().is_err(), "{bad}");
+        }
+        assert_eq!("0.5".parse(), Ok(LightSize([0.5, 0.5])));
+        assert_eq!("1x0".parse(), Ok(LightSize([1.0, 0.0])));
+        for bad in ["", "x", "-1", "nan", "1xinf", "1x2x3"] {
+            assert!(bad.parse::<LightSize>().is_err(), "{bad}");
+        }
+    }
+}
