@@ -133,9 +133,9 @@ pub struct TruthArgs {
     pub seed: u64,
     /// Folder that keeps traced references [default: antumbra in the user's cache folder: on Linux $XDG_CACHE_HOME, else
     /// ~/.cache]
-    #[arg(long, value_name = "DIR", env = "ANTUMBRA_CACHE", conflicts_with = "no_cache")]
+    #[arg(long, value_name = "DIR", env = "ANTUMBRA_CACHE")]
     pub cache: Option<PathBuf>,
-    /// Trace anew, and keep nothing
+    /// Trace anew and keep nothing, whatever --cache says
     #[arg(long)]
     pub no_cache: bool,
 }
