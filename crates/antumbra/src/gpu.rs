@@ -76,27 +76,42 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::CONSERVATIVE_RASTERIZATION)
     .union(wgpu::Features::SUBGROUP);
 
-fn instance() -> wgpu::Instance {
-    wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env())
-}
-
-/// All adapters, best first: the order that [`AdapterChoice::Index`] counts in.
+/// All adapters that can run Antumbra, best first: the order that [`AdapterChoice::Index`] counts in. OpenGL is asked
+/// only where no other API has an adapter, so that no device is listed twice. `WGPU_BACKEND` narrows the choice.
 pub async fn adapters() -> Vec<wgpu::Adapter> {
-    let mut list = instance().enumerate_adapters(wgpu::Backends::all()).await;
-    list.sort_by_key(|a| rank(&a.get_info()));
-    list
+    for backends in [wgpu::Backends::PRIMARY, wgpu::Backends::SECONDARY] {
+        let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+        descriptor.backends &= backends;
+        let mut list = wgpu::Instance::new(descriptor).enumerate_adapters(backends).await;
+        list.retain(is_usable);
+        list.sort_by_key(|a| rank(&a.get_info()));
+        if !list.is_empty() {
+            return list;
+        }
+    }
+    Vec::new()
 }
 
-/// Smaller is better: the kind of device first, then the native API that serves it best.
-fn rank(info: &wgpu::AdapterInfo) -> (u32, u32) {
-    let kind = match info.device_type {
+/// True if the adapter has compute shaders and renders to the geometry buffer's formats.
+fn is_usable(adapter: &wgpu::Adapter) -> bool {
+    let renders = |format| {
+        let usages = adapter.get_texture_format_features(format).allowed_usages;
+        usages.contains(wgpu::TextureUsages::RENDER_ATTACHMENT)
+    };
+    let needed = wgpu::DownlevelFlags::COMPUTE_SHADERS | wgpu::DownlevelFlags::INDIRECT_EXECUTION;
+    let flags = adapter.get_downlevel_capabilities().flags;
+    flags.contains(needed) && renders(wgpu::TextureFormat::Rgba32Float)
+}
+
+/// Smaller is better.
+fn rank(info: &wgpu::AdapterInfo) -> u32 {
+    match info.device_type {
         wgpu::DeviceType::DiscreteGpu => 0,
         wgpu::DeviceType::IntegratedGpu => 1,
         wgpu::DeviceType::VirtualGpu => 2,
         wgpu::DeviceType::Other => 3,
         wgpu::DeviceType::Cpu => 4,
-    };
-    (kind, u32::from(info.backend == wgpu::Backend::Gl))
+    }
 }
 
 impl Gpu {

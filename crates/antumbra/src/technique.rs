@@ -29,6 +29,9 @@ impl Memory {
     }
 }
 
+/// Makes a technique from its settings.
+pub type MakeTechnique = fn(&Gpu, Value) -> Result<Box<dyn Technique>, Error>;
+
 /// An entry of the list of techniques.
 #[derive(Clone, Copy)]
 pub struct TechniqueInfo {
@@ -44,8 +47,8 @@ pub struct TechniqueInfo {
     pub settings: &'static [Setting],
     /// Its defaults.
     pub defaults: fn() -> Value,
-    /// Makes one.
-    pub make: fn(&Gpu, Value) -> Result<Box<dyn Technique>, Error>,
+    /// Makes one from all its settings.
+    pub make: MakeTechnique,
 }
 
 /// A technique with its settings, as on the command line: `name:key=value,key=value`.

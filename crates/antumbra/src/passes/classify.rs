@@ -24,7 +24,7 @@ impl PenumbraList {
 
     /// Makes a list in `slot` unless one for a picture of this size is there.
     pub fn ensure<'a>(slot: &'a mut Option<PenumbraList>, gpu: &Gpu, size: [u32; 2]) -> &'a PenumbraList {
-        if !slot.as_ref().is_some_and(|l| l.size == size) {
+        if slot.as_ref().is_none_or(|l| l.size != size) {
             *slot = Some(PenumbraList::new(gpu, size));
         }
         slot.as_ref().expect("just made")

@@ -47,7 +47,7 @@ impl DepthPyramid {
     /// Makes a pyramid in `slot` unless one for a map of this size is there.
     pub fn ensure<'a>(slot: &'a mut Option<DepthPyramid>, gpu: &Gpu, size: u32) -> &'a DepthPyramid {
         let half = size.div_ceil(2).max(1);
-        if !slot.as_ref().is_some_and(|p| p.bounds.texture.width() == half) {
+        if slot.as_ref().is_none_or(|p| p.bounds.texture.width() != half) {
             *slot = Some(DepthPyramid::new(gpu, size));
         }
         slot.as_ref().expect("just made")
