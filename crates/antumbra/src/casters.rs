@@ -302,6 +302,15 @@ fn check(mesh: &BorrowedMesh) -> Result<(), String> {
         return Err(format!("its vertex stride of {} bytes is shorter than a position", mesh.vertex_stride));
     }
     let t = &mesh.transforms;
+    if t.stride < 64 {
+        return Err(format!("its transform stride of {} bytes is shorter than a matrix", t.stride));
+    }
+    if let Some(mask) = &mesh.mask {
+        words(mask.uv_offset, "offset of texture coordinates")?;
+        if !(mask.cutoff > 0.0 && mask.cutoff <= 1.0) {
+            return Err(format!("its mask's cutoff of {} is not over 0 and up to 1", mask.cutoff));
+        }
+    }
     holds(t.buffer, "transform", t.offset + t.stride * u64::from(t.count - 1) + 64)?;
     match &mesh.indices {
         None => {

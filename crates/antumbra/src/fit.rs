@@ -18,6 +18,10 @@ pub struct ShadowFrustum {
 /// Half the widest frustum that is fitted, as a tangent: 160 degrees.
 const MAX_TAN: f32 = 5.67;
 
+/// How much longer than wide a texel may be: techniques read square windows of texels, so that what the longer side lacks
+/// is lost on the shorter one too.
+const MAX_ELONGATION: f32 = 4.0;
+
 /// Cells a side of the grid that remembers the deepest surface.
 const CELLS: usize = 192;
 
@@ -68,6 +72,7 @@ impl ShadowFrustum {
         if tan.max_element() <= 0.0 {
             return around;
         }
+        let tan = tan.max(Vec2::splat(tan.max_element() / MAX_ELONGATION));
         ShadowFrustum { tan_half: (tan * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN)), near: around.near }
     }
 }

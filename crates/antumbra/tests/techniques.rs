@@ -1,0 +1,104 @@
+//! Every technique on every built-in scene: finite, within [0, 1], the same on a second run, no validation error. A
+//! technique or a scene that is added to its list is covered here without an edit.
+
+mod common;
+
+use antumbra::techniques::TECHNIQUES;
+use antumbra::{TechniqueInfo, scene::SceneRenderer};
+use antumbra_scene::builtin::{self, BuiltinInfo};
+use common::{drawn, shadowed, technique};
+
+const SIZE: [u32; 2] = [97, 64];
+
+/// The SPEC of a scene whose counts are as small as they may be where the default takes long.
+fn small(info: &BuiltinInfo) -> String {
+    let counts = ["triangles", "trees"];
+    let few = info.parameters.iter().filter(|p| counts.contains(&p.name));
+    let list: Vec<String> = few.map(|p| format!("{}={}", p.name, p.min.max(3.0))).collect();
+    format!("{}:{}", info.name, list.join(","))
+}
+
+/// The SPEC of a technique with a small map, if it has one.
+fn quick(info: &TechniqueInfo) -> String {
+    let has_map = info.settings.iter().any(|s| s.key == "map");
+    if has_map { format!("{}:map=256", info.name) } else { info.name.to_owned() }
+}
+
+/// What is wrong with a technique on a scene.
+fn fault(renderer: &SceneRenderer, spec: &str) -> Option<String> {
+    let mut one = technique(spec);
+    let mut pictures = Vec::new();
+    // The same instance twice, then another.
+    for run in ["first", "second"] {
+        match shadowed(renderer, &mut *one) {
+            Ok(picture) => pictures.push(picture),
+            Err(e) => return Some(format!("{run} record: {e}")),
+        }
+    }
+    match shadowed(renderer, &mut *technique(spec)) {
+        Ok(picture) => pictures.push(picture),
+        Err(e) => return Some(format!("another instance: {e}")),
+    }
+    let place = |i: usize| format!("pixel ({}, {})", i as u32 % SIZE[0], i as u32 / SIZE[0]);
+    if let Some(i) = pictures[0].iter().position(|v| !(0.0..=1.0).contains(v)) {
+        return Some(format!("{} is {}", place(i), pictures[0][i]));
+    }
+    for (run, other) in ["a second record", "another instance"].iter().zip(&pictures[1..]) {
+        let differs = (0..other.len()).find(|&i| other[i].to_bits() != pictures[0][i].to_bits());
+        if let Some(i) = differs {
+            return Some(format!("{run} gives {} where the first gave {} at {}", other[i], pictures[0][i], place(i)));
+        }
+    }
+    None
+}
+
+#[test]
+fn every_technique_on_every_scene_is_in_range_and_repeatable() {
+    let mut faults = Vec::new();
+    for info in builtin::list() {
+        let scene = common::builtin(&small(info));
+        let renderer = drawn(&scene, SIZE);
+        for technique in TECHNIQUES {
+            let spec = quick(technique);
+            faults.extend(fault(&renderer, &spec).map(|f| format!("{spec} on {}: {f}", scene.name)));
+        }
+    }
+    assert!(faults.is_empty(), "{} faults:\n{}", faults.len(), faults.join("\n"));
+}
+
+#[test]
+fn a_technique_follows_a_change_of_picture_size_and_casters() {
+    let [first, second] =
+        [("fence:slats=9", [64, 48]), ("square:", [40, 56])].map(|(s, size)| drawn(&common::builtin(s), size));
+    for info in TECHNIQUES {
+        let spec = quick(info);
+        let mut kept = technique(&spec);
+        for (renderer, name) in [(&first, "first"), (&second, "second"), (&first, "first again")] {
+            let by_kept = shadowed(renderer, &mut *kept).unwrap_or_else(|e| panic!("{spec}, {name}: {e}"));
+            let by_new = shadowed(renderer, &mut *technique(&spec)).unwrap_or_else(|e| panic!("{spec}, {name}: {e}"));
+            assert!(by_kept == by_new, "{spec}: on the {name} scene a used instance differs from a new one");
+        }
+    }
+}
+
+#[test]
+fn every_technique_says_what_it_is_and_what_memory_it_takes() {
+    let renderer = drawn(&common::builtin("square"), [32, 32]);
+    for info in TECHNIQUES {
+        for text in [info.name, info.title, info.source, info.summary] {
+            assert!(!text.is_empty(), "{}: an empty text", info.name);
+        }
+        let mut made = technique(info.name);
+        shadowed(&renderer, &mut *made).unwrap_or_else(|e| panic!("{}: {e}", info.name));
+        for memory in made.memory() {
+            assert!(memory.bytes > 0 && !memory.pass.is_empty(), "{}: {memory:?}", info.name);
+        }
+        for setting in info.settings {
+            assert!(!setting.help.is_empty(), "{}: `{}` has no help", info.name, setting.key);
+            let default = &(info.defaults)()[setting.key];
+            let word = default.as_str().map_or(default.to_string(), str::to_owned);
+            let spec = format!("{}:{}={word}", info.name, setting.key);
+            assert!(spec.parse::<antumbra::Spec>().is_ok(), "the default itself must be a value: {spec}");
+        }
+    }
+}
