@@ -38,10 +38,15 @@ fn main() -> ExitCode {
 fn demo(more: &[String]) -> Result<(), Failure> {
     machine::set_up(&[machine::Need::CppCompiler, machine::Need::VulkanDriver])?;
     // `--bin` and no `--package`: features are then those of the whole workspace, so that `test` builds nothing twice.
-    let compare = cargo(["run", "--bin", "antumbra", "--", "compare", "builtin:fence"])
-        .args(["-t", "hard", "-t", "pcf", "-t", "pcss", "-o", "target/demo"])
-        .args(["--light-samples", "256"]) // a quarter of the usual rays: nobody waits long for a demo
+    let mut compare = cargo(["run", "--bin", "antumbra", "--", "compare", "builtin:fence"])
+        .args(["-t", "hard", "-t", "pcf", "-t", "pcss"])
         .args(more);
+    // A quarter of the usual rays: nobody waits long for a demo.
+    for (option, value) in [("-o", "target/demo"), ("--light-samples", "256")] {
+        if !more.iter().any(|given| given == option) {
+            compare = compare.args([option, value]);
+        }
+    }
     Step::new("demo", compare).run()?;
     Ok(())
 }
