@@ -166,6 +166,9 @@ fn module_path(path: &str) -> ModulePath {
 }
 
 #[cfg(test)]
+mod twins;
+
+#[cfg(test)]
 mod tests {
     use super::*;
 
