@@ -2,7 +2,7 @@
 
 use crate::casters::Casters;
 use crate::shader::HostStruct;
-use crate::{Error, Gpu, ShadowFrustum, gpu_struct};
+use crate::{Error, Gpu, ShadowFrustum, bindings, gpu_struct, pipeline::Binding};
 use antumbra_scene::{Camera, RectLight};
 use glam::{DMat4, DVec4, Mat3, Mat4, UVec2, Vec2, Vec3};
 use std::sync::Arc;
@@ -128,6 +128,17 @@ impl Frame {
     pub fn update(&mut self, gpu: &Gpu, view: View, light: RectLight, frustum: ShadowFrustum) {
         (self.view, self.light, self.frustum) = (view, light, frustum);
         self.write(gpu);
+    }
+
+    /// What shaders import from `shaders/frame.wesl` and the visibility that they write, and `more`.
+    pub fn bindings<'a>(&'a self, more: &[Binding<'a>]) -> Vec<Binding<'a>> {
+        let frame = bindings! {
+            frame: &self.uniform,
+            geometry_depth: &self.geometry.depth,
+            geometry_normal: &self.geometry.normal,
+            visibility: &self.visibility,
+        };
+        [&frame[..], more].concat()
     }
 
     fn write(&self, gpu: &Gpu) {

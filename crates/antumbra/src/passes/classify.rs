@@ -42,22 +42,18 @@ impl PenumbraList {
         let classify = recorder.gpu.compute_pipeline(&key, "classify_pixels")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
         recorder.encoder.clear_buffer(&self.buffer, 0, Some(16));
-        let set = bindings! {
-            frame: &frame.uniform,
-            geometry_depth: &frame.geometry.depth,
-            geometry_normal: &frame.geometry.normal,
+        let set = frame.bindings(bindings! {
             depth_map: &map.texture,
             pyramid_bounds: &pyramid.bounds,
-            visibility: &frame.visibility,
             penumbra: &self.buffer,
-        };
+        });
         let [width, height] = frame.geometry.size;
         recorder.compute_pass("pixel classification", |gpu, pass| {
             pass.set_pipeline(&classify.pipeline);
-            pass.set_bind_group(0, &classify.bind_group(gpu, 0, set), &[]);
+            pass.set_bind_group(0, &classify.bind_group(gpu, 0, &set), &[]);
             dispatch(pass, &classify, Work::Threads([width, height, 1]));
             pass.set_pipeline(&finish.pipeline);
-            pass.set_bind_group(0, &finish.bind_group(gpu, 0, set), &[]);
+            pass.set_bind_group(0, &finish.bind_group(gpu, 0, &set), &[]);
             pass.dispatch_workgroups(1, 1, 1);
         });
         Ok(())

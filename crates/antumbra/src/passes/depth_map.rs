@@ -7,7 +7,7 @@ use crate::recorder::{Recorder, depth_target};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
 use crate::technique::Memory;
-use crate::{Error, Gpu, bindings};
+use crate::{Error, Frame, Gpu, bindings};
 use glam::Mat4;
 
 /// A square map of `near / z`, z being the linear distance along the light's normal and `near` that of the frustum
@@ -47,6 +47,18 @@ impl DepthMap {
             *slot = Some(DepthMap::new(gpu, size, casters)?);
         }
         Ok(slot.as_ref().expect("just made"))
+    }
+
+    /// Makes a map of `size` texels a side in `slot` if need be and draws what the light's centre sees.
+    pub fn of_light<'a>(
+        slot: &'a mut Option<DepthMap>,
+        recorder: &mut Recorder,
+        frame: &Frame,
+        size: u32,
+    ) -> Result<&'a DepthMap, Error> {
+        let map = DepthMap::ensure(slot, recorder.gpu, size, &frame.casters)?;
+        map.record(recorder, &frame.casters, frame.map_clip_from_world())?;
+        Ok(map)
     }
 
     /// Draws the casters that `clip_from_world` holds.

@@ -25,16 +25,12 @@ impl Picture {
     pub fn record(&self, recorder: &mut Recorder, frame: &Frame, geometry: &GeometryBuffer) -> Result<(), Error> {
         let key = ShaderKey::new("passes::picture").with::<FrameUniform>();
         let pipeline = recorder.gpu.compute_pipeline(&key, "shade")?;
-        let set = bindings! {
-            frame: &frame.uniform,
-            geometry_depth: &frame.geometry.depth,
-            geometry_normal: &frame.geometry.normal,
+        let set = frame.bindings(bindings! {
             base_color: &geometry.color,
-            visibility: &frame.visibility,
             picture: &self.texture,
-        };
+        });
         let [width, height] = frame.geometry.size;
-        recorder.compute("picture", &pipeline, set, Work::Threads([width, height, 1]));
+        recorder.compute("picture", &pipeline, &set, Work::Threads([width, height, 1]));
         Ok(())
     }
 }

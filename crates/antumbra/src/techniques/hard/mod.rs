@@ -42,17 +42,12 @@ impl Describe for Hard {
 
 impl Technique for Hard {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
-        let map = DepthMap::ensure(&mut self.map, recorder.gpu, self.settings.map, &frame.casters)?;
-        map.record(recorder, &frame.casters, frame.map_clip_from_world())?;
-        let set = bindings! {
-            frame: &frame.uniform,
-            geometry_depth: &frame.geometry.depth,
-            geometry_normal: &frame.geometry.normal,
+        let map = DepthMap::of_light(&mut self.map, recorder, frame, self.settings.map)?;
+        let set = frame.bindings(bindings! {
             depth_map: &map.texture,
-            visibility: &frame.visibility,
-        };
+        });
         let [width, height] = frame.geometry.size;
-        recorder.compute("shadow lookup", &self.lookup, set, Work::Threads([width, height, 1]));
+        recorder.compute("shadow lookup", &self.lookup, &set, Work::Threads([width, height, 1]));
         Ok(())
     }
 

@@ -67,24 +67,19 @@ impl Describe for Pcss {
 impl Technique for Pcss {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         let gpu = recorder.gpu;
-        let map = DepthMap::ensure(&mut self.map, gpu, self.settings.map, &frame.casters)?;
+        let map = DepthMap::of_light(&mut self.map, recorder, frame, self.settings.map)?;
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
-        map.record(recorder, &frame.casters, frame.map_clip_from_world())?;
         pyramid.record(recorder, map, frame.frustum.near)?;
         list.record(recorder, frame, map, pyramid)?;
-        let set = bindings! {
-            frame: &frame.uniform,
-            geometry_depth: &frame.geometry.depth,
-            geometry_normal: &frame.geometry.normal,
+        let set = frame.bindings(bindings! {
             depth_map: &map.texture,
             pyramid_bounds: &pyramid.bounds,
             pyramid_layers: &pyramid.layers,
             penumbra_pixels: &list.buffer,
             pcss: &self.uniform,
-            visibility: &frame.visibility,
-        };
-        recorder.compute("blocker search and filter", &self.soften, set, Work::Indirect(&list.buffer, 0));
+        });
+        recorder.compute("blocker search and filter", &self.soften, &set, Work::Indirect(&list.buffer, 0));
         Ok(())
     }
 
