@@ -31,7 +31,7 @@ fn merge_layers(nodes: [Layers; 4]) -> Layers {
 fn inputs(count: usize) -> Vec<[Layers; 4]> {
     let mut random = Random(11);
     let mut node = |i: usize, k: usize| {
-        let scale = if i % 2 == 0 { 1.0 } else { 1e3 };
+        let scale = if i.is_multiple_of(2) { 1.0 } else { 1e3 };
         let mut q = || (random.unit() * scale).max(1e-6);
         let (a, b, share) = (q(), q(), (random.unit()).max(1e-3));
         match (i / 2 + k * (i / 7)) % 4 {
