@@ -1,5 +1,5 @@
-//! Embeds every `.wesl` file below `src` as a WESL module named after its path, so that a technique's shaders are
-//! found because they lie in its folder.
+//! Embeds every `.wesl` file below `src` as a WESL module named after its path, and lists every struct that
+//! `gpu_struct!` declares: a technique's shaders and structs are found because they lie in its folder.
 
 use std::{env, fmt::Write, fs, path::Path};
 
@@ -8,13 +8,22 @@ fn main() {
     let mut files = Vec::new();
     collect(&root, &mut files);
     files.sort();
-    let mut table = String::from("pub(crate) const SOURCES: &[(&str, &str)] = &[\n");
+    let mut sources = String::from("pub(crate) const SOURCES: &[(&str, &str)] = &[\n");
+    let mut structs = String::from("#[cfg(test)]\npub(crate) const HOST_STRUCTS: &[fn() -> String] = &[\n");
     for file in &files {
         let relative = file.strip_prefix(&root).expect("found below the root").with_extension("");
-        let module = relative.iter().map(|part| part.to_str().expect("UTF-8 path")).collect::<Vec<_>>().join("::");
-        writeln!(table, "    (\"package::{module}\", include_str!({:?})),", file.display().to_string()).unwrap();
+        let parts = relative.iter().map(|part| part.to_str().expect("UTF-8 path")).collect::<Vec<_>>();
+        if file.extension().is_some_and(|e| e == "wesl") {
+            let module = parts.join("::");
+            writeln!(sources, "    (\"package::{module}\", include_str!({:?})),", file.display().to_string()).unwrap();
+            continue;
+        }
+        let module = parts.iter().filter(|p| **p != "mod").map(|p| format!("{p}::")).collect::<String>();
+        for name in host_structs(&fs::read_to_string(file).expect("sources are UTF-8")) {
+            writeln!(structs, "    <crate::{module}{name} as HostStruct>::wgsl,").unwrap();
+        }
     }
-    table.push_str("];\n");
+    let table = format!("{sources}];\n{structs}];\n");
     let out = Path::new(&env::var("OUT_DIR").expect("cargo sets it")).join("shader_sources.rs");
     fs::write(out, table).expect("the build folder is writable");
 }
@@ -25,8 +34,14 @@ fn collect(folder: &Path, files: &mut Vec<std::path::PathBuf>) {
         let path = entry.expect("the source folder is readable").path();
         if path.is_dir() {
             collect(&path, files);
-        } else if path.extension().is_some_and(|e| e == "wesl") {
+        } else if path.extension().is_some_and(|e| e == "wesl" || e == "rs") {
             files.push(path);
         }
     }
+}
+
+/// Names of the structs that are declared at the start of a line by `gpu_struct!`.
+fn host_structs(source: &str) -> Vec<&str> {
+    let declarations = source.split("\ngpu_struct! {").skip(1);
+    declarations.filter_map(|d| d.split_once(" struct ")?.1.split([' ', '{']).next()).collect()
 }

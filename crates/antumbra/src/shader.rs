@@ -172,20 +172,6 @@ mod twins;
 mod tests {
     use super::*;
 
-    /// Every struct that any shader shares with the host.
-    fn host_structs() -> String {
-        use crate::{casters, frame, passes, techniques};
-        let mut all = String::new();
-        all += &casters::BatchLayout::wgsl();
-        all += &frame::FrameUniform::wgsl();
-        all += &passes::culling::MapView::wgsl();
-        all += &passes::geometry_buffer::ViewUniform::wgsl();
-        all += &passes::depth_pyramid::PyramidUniform::wgsl();
-        all += &techniques::pcf::PcfUniform::wgsl();
-        all += &techniques::pcss::PcssUniform::wgsl();
-        all
-    }
-
     /// All names in `@if(...)` of a module.
     fn features_of(text: &'static str) -> Vec<&'static str> {
         let mut names: Vec<&str> = text
@@ -203,7 +189,7 @@ mod tests {
 
     #[test]
     fn every_variant_of_every_entry_module_composes_and_validates() {
-        let structs = host_structs();
+        let structs: String = HOST_STRUCTS.iter().map(|wgsl| wgsl()).collect();
         let mut variants = 0;
         for (path, text) in SOURCES {
             if !["@compute", "@vertex", "@fragment"].iter().any(|stage| text.contains(stage)) {
