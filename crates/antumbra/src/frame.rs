@@ -97,7 +97,7 @@ pub struct Frame {
     pub geometry: GeometryInput,
     /// The result: `R32Float` with `STORAGE_BINDING`, the visible fraction of the light at each pixel.
     pub visibility: wgpu::TextureView,
-    /// [`FrameUniform`], for shaders.
+    /// The uniform of `shaders/frame.wesl`.
     pub uniform: wgpu::Buffer,
 }
 
