@@ -45,17 +45,21 @@ pub fn instances() -> Vec<Mat4> {
     ]
 }
 
-/// World to view, and view to clip space with reversed depth.
-pub fn view() -> View {
-    let camera = antumbra::Camera {
+/// Where it is seen from.
+pub fn camera() -> antumbra::Camera {
+    antumbra::Camera {
         eye: Vec3::new(2.6, 2.4, 3.4),
         target: Vec3::new(0.0, 0.5, 0.0),
         up: Vec3::Y,
         fov_y_deg: 45.0,
         near: 0.1,
         far: 50.0,
-    };
-    View::of_camera(&camera, [SIZE, SIZE])
+    }
+}
+
+/// World to view, and view to clip space with reversed depth.
+pub fn view() -> View {
+    View::of_camera(&camera(), [SIZE, SIZE])
 }
 
 /// A lamp of 60 x 60 cm.

@@ -4,7 +4,7 @@
 mod host;
 
 use antumbra_reference::{Settings, trace};
-use antumbra_scene::{Camera, Instance, Material, Mesh, Scene};
+use antumbra_scene::{Instance, Material, Mesh, Scene};
 use glam::{Affine3A, Vec3};
 use std::sync::atomic::AtomicBool;
 
@@ -25,14 +25,7 @@ fn scene() -> Scene {
         meshes: vec![mesh],
         materials: vec![Material::default()],
         instances: host::instances().iter().map(placed).collect(),
-        camera: Camera {
-            eye: Vec3::new(2.6, 2.4, 3.4),
-            target: Vec3::new(0.0, 0.5, 0.0),
-            up: Vec3::Y,
-            fov_y_deg: 45.0,
-            near: 0.1,
-            far: 50.0,
-        },
+        camera: host::camera(),
         light: host::light(),
         size: None,
     }
