@@ -3,6 +3,7 @@
 use crate::settings::{Setting, Settings, SpecError, nearest, parse_values};
 use crate::{Error, Frame, Gpu, recorder::Recorder, techniques::TECHNIQUES};
 use serde_json::{Map, Value};
+use std::pin::Pin;
 
 /// Fills a frame's visibility.
 pub trait Technique {
@@ -11,7 +12,16 @@ pub trait Technique {
 
     /// GPU memory that it owns, by the label of the pass that fills it.
     fn memory(&self) -> Vec<Memory>;
+
+    /// What the last frame did, in figures that are neither time nor memory, such as the number of maps. Waits for the
+    /// GPU: for tests and reports.
+    fn figures<'a>(&'a self, _gpu: &'a Gpu) -> FiguresFuture<'a> {
+        Box::pin(std::future::ready(Ok(Vec::new())))
+    }
 }
+
+/// Names and values of [`Technique::figures`].
+pub type FiguresFuture<'a> = Pin<Box<dyn Future<Output = Result<Vec<(&'static str, f64)>, Error>> + 'a>>;
 
 /// GPU memory of one pass.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
