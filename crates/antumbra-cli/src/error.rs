@@ -47,7 +47,7 @@ pub enum CliError {
         source: io::Error,
     },
     /// Ctrl-C.
-    #[error("stopped; nothing was written")]
+    #[error("stopped; nothing unfinished was written")]
     Stopped,
 }
 

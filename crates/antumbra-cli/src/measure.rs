@@ -1,10 +1,10 @@
 //! What a technique costs: GPU time by pass over several frames, and memory.
 
 use crate::error::CliError;
-use crate::progress;
+use crate::{progress, setup};
 use antumbra::recorder::PassTime;
 use antumbra::scene::SceneRenderer;
-use antumbra::{Error, Gpu, Recorder, Technique, Timer};
+use antumbra::{Error, Gpu, Recorder, Spec, Technique, Timer};
 use pollster::block_on;
 use serde::Serialize;
 use std::time::Instant;
@@ -39,6 +39,16 @@ pub enum Timing {
     Wall,
 }
 
+impl Timing {
+    /// As files have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Timing::Gpu => "gpu",
+            Timing::Wall => "wall",
+        }
+    }
+}
+
 /// What a technique costs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Cost {
@@ -52,6 +62,30 @@ pub struct Cost {
     pub wall_ms: f64,
     /// Which clock `total_ms` is read from.
     pub timing: Timing,
+}
+
+/// What a technique has made of a scene.
+pub struct Drawn {
+    /// What it took.
+    pub cost: Cost,
+    /// What it found, row 0 on top.
+    pub visibility: Vec<f32>,
+    /// What it says of its work, such as the number of maps.
+    pub work: Vec<(&'static str, f64)>,
+}
+
+/// Makes a technique and measures it.
+pub fn draw(
+    gpu: &Gpu,
+    renderer: &SceneRenderer,
+    spec: &Spec,
+    frames: u32,
+    on_frame: impl Fn(f32),
+) -> Result<Drawn, CliError> {
+    let mut technique = block_on(gpu.checked(|| spec.make(gpu)))?;
+    let cost = measure(gpu, renderer, &mut *technique, frames, on_frame)?;
+    let work = block_on(gpu.checked(|| block_on(technique.figures(gpu))))?;
+    Ok(Drawn { cost, visibility: setup::visibility(gpu, renderer)?, work })
 }
 
 /// Draws frames of a technique until `frames` of them have been timed. The last one's visibility stays.

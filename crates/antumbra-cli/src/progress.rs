@@ -35,21 +35,21 @@ pub fn check_cancelled() -> Result<(), CliError> {
 
 /// A bar on stderr that shows itself after a second, and only on a terminal. It goes away when it is dropped.
 pub struct Progress {
-    what: &'static str,
+    what: String,
     started: Instant,
     bar: OnceLock<ProgressBar>,
 }
 
 impl Progress {
     /// Work that starts now.
-    pub fn new(what: &'static str) -> Progress {
-        Progress { what, started: Instant::now(), bar: OnceLock::new() }
+    pub fn new(what: impl Into<String>) -> Progress {
+        Progress { what: what.into(), started: Instant::now(), bar: OnceLock::new() }
     }
 
     /// The fraction that is done.
     pub fn set(&self, done: f32) {
         if self.started.elapsed() > PATIENCE {
-            let bar = self.bar.get_or_init(|| bar(self.what));
+            let bar = self.bar.get_or_init(|| bar(self.what.clone()));
             bar.set_position((done * 1000.0) as u64);
         }
     }
@@ -63,7 +63,7 @@ impl Drop for Progress {
     }
 }
 
-fn bar(what: &'static str) -> ProgressBar {
+fn bar(what: String) -> ProgressBar {
     let bar = ProgressBar::new(1000).with_message(what);
     match ProgressStyle::with_template("{msg} [{bar:40}] {percent:>3} % {eta:>5} left") {
         Ok(style) => bar.with_style(style.progress_chars("=> ")),

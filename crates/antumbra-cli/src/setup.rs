@@ -50,3 +50,10 @@ pub fn picture(gpu: &Gpu, renderer: &SceneRenderer) -> Result<Vec<u8>, CliError>
 pub fn visibility(gpu: &Gpu, renderer: &SceneRenderer) -> Result<Vec<f32>, CliError> {
     Ok(block_on(gpu.checked(|| block_on(renderer.read_visibility(gpu))))?)
 }
+
+/// The command as it was typed; words with spaces in quotes.
+pub fn command_line() -> String {
+    let quoted = |word: String| if word.contains(' ') { format!("'{word}'") } else { word };
+    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("antumbra".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
+}

@@ -4,6 +4,7 @@ use crate::cli::TruthArgs;
 use crate::error::CliError;
 use crate::progress::{self, Progress};
 use antumbra_reference::cache::{Cached, trace_cached};
+use antumbra_metrics::{Figures, Image, MetricsError, RgbImage, figures, heat_map};
 use antumbra_reference::{Reference, Settings, trace};
 use antumbra_scene::Scene;
 use std::path::{Path, PathBuf};
@@ -66,6 +67,28 @@ fn warn_if_not_kept(cached: &Cached, folder: &Path) {
 }
 
 impl Truth {
+    /// How far from it a technique's visibility is.
+    pub fn figures(&self, spec: &str, visibility: &[f32]) -> Result<Figures, CliError> {
+        self.against(spec, visibility, figures)
+    }
+
+    /// Where a technique's visibility strays from it.
+    pub fn heat_map(&self, spec: &str, visibility: &[f32]) -> Result<RgbImage, CliError> {
+        self.against(spec, visibility, heat_map)
+    }
+
+    fn against<T>(
+        &self,
+        spec: &str,
+        visibility: &[f32],
+        compare: impl Fn(Image, Image, &[bool]) -> Result<T, MetricsError>,
+    ) -> Result<T, CliError> {
+        let Reference { width, height, visibility: exact, valid, .. } = &self.reference;
+        let image = |values| Image::new(*width, *height, values);
+        let compared = image(visibility).and_then(|test| compare(test, image(exact)?, valid));
+        compared.map_err(|source| CliError::Metrics { spec: spec.to_owned(), source })
+    }
+
     /// One line about it for people.
     pub fn summary(&self) -> String {
         let r = &self.reference;

@@ -20,6 +20,8 @@ gpu_struct! {
         transform_stride: u32,
         first_item: u32,
         item_count: u32,
+        /// Place among the batches.
+        number: u32,
         /// Alpha below this is cut out; 0 for opaque.
         alpha_cutoff: f32,
         /// Factor of the texture's alpha.
@@ -166,6 +168,7 @@ impl Casters {
                 transform_stride: (mesh.transforms.stride / 4) as u32,
                 first_item: 0,
                 item_count: 0,
+                number: 0,
                 alpha_cutoff: mesh.mask.map_or(0.0, |m| m.cutoff),
                 alpha: 1.0,
                 textured: u32::from(mesh.mask.is_some()),
@@ -242,6 +245,7 @@ impl<'a> CastersBuilder<'a> {
             self.words.push(item.words());
         }
         layout.item_count = self.words.len() as u32 - layout.first_item;
+        layout.number = self.batches.len() as u32;
         let (texture, sampler) = texture.unwrap_or((&self.white.0, &self.white.1));
         self.batches.push(Batch {
             vertices,

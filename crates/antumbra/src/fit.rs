@@ -13,6 +13,9 @@ pub struct ShadowFrustum {
     pub tan_half: Vec2,
     /// Casters nearer to the light's plane than this are not seen, metres.
     pub near: f32,
+    /// Distance from the light's plane of the nearest and of the farthest surface that takes shadows, metres. Maps from
+    /// other points of the light are made as much wider as these are apart; a receiver outside of its map counts as lit.
+    pub receivers: [f32; 2],
 }
 
 /// Half the widest frustum that is fitted, as a tangent: 160 degrees.
@@ -22,6 +25,9 @@ const MAX_TAN: f32 = 5.67;
 /// is lost on the shorter one too.
 const MAX_ELONGATION: f32 = 4.0;
 
+/// Casters and receivers nearer to the light than this part of the farthest distance do not widen a frustum.
+const NEAREST: f32 = 0.02;
+
 /// Cells a side of the grid that remembers the deepest surface.
 const CELLS: usize = 192;
 
@@ -30,8 +36,8 @@ const SEPARATION: f32 = 2e-3;
 
 impl ShadowFrustum {
     /// A square frustum of an opening in degrees.
-    pub fn of_degrees(fov_deg: f32, near: f32) -> ShadowFrustum {
-        ShadowFrustum { tan_half: Vec2::splat((0.5 * fov_deg).to_radians().tan()), near }
+    pub fn of_degrees(fov_deg: f32, near: f32, receivers: [f32; 2]) -> ShadowFrustum {
+        ShadowFrustum { tan_half: Vec2::splat((0.5 * fov_deg).to_radians().tan()), near, receivers }
     }
 
     /// The smallest frustum around a box, for hosts that know nothing closer. The light's own setting counts if it has
@@ -39,12 +45,14 @@ impl ShadowFrustum {
     pub fn around(light: &RectLight, bounds: &Aabb) -> ShadowFrustum {
         let corners = bounds.corners().map(|c| light.light_from_world(c));
         let far = corners.iter().fold(0.0f32, |m, c| m.max(c.z));
+        let nearest = far * NEAREST;
+        let low = corners.iter().fold(far, |m, c| m.min(c.z)).max(nearest);
+        let receivers = [low.max(1e-6), far.max(1e-6)];
         if let Some(degrees) = light.shadow_fov_deg {
-            return ShadowFrustum::of_degrees(degrees, near_of(far));
+            return ShadowFrustum::of_degrees(degrees, near_of(far), receivers);
         }
-        let nearest = far * 0.02;
         let tan = corners.iter().fold(Vec2::splat(1e-3), |m, c| m.max(c.truncate().abs() / c.z.max(nearest)));
-        ShadowFrustum { tan_half: tan.min(Vec2::splat(MAX_TAN)) * 1.01, near: near_of(far) }
+        ShadowFrustum { tan_half: tan.min(Vec2::splat(MAX_TAN)) * 1.01, near: near_of(far), receivers }
     }
 
     /// The frustum that holds what casts shadows on what a view sees, and these shadows. Surfaces with nothing behind
@@ -73,7 +81,14 @@ impl ShadowFrustum {
             return around;
         }
         let tan = tan.max(Vec2::splat(tan.max_element() / MAX_ELONGATION));
-        ShadowFrustum { tan_half: (tan * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN)), near: around.near }
+        // What is nearer to the light than every caster takes no shadow.
+        let near_q = seen.near_q.min(deepest.nearest_q).max(seen.far_q);
+        let [low, high] = around.receivers;
+        ShadowFrustum {
+            tan_half: (tan * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN)),
+            near: around.near,
+            receivers: [(1.0 / near_q).clamp(low, high), (1.0 / seen.far_q).clamp(low, high)],
+        }
     }
 }
 
@@ -115,8 +130,9 @@ fn for_each_triangle(scene: &Scene, mut call: impl FnMut([Vec3; 3], bool)) {
 struct Seen {
     low: Vec2,
     high: Vec2,
-    /// Inverse distance of the farthest.
+    /// Inverse distance of the farthest, and of the nearest.
     far_q: f32,
+    near_q: f32,
 }
 
 impl Seen {
@@ -133,7 +149,7 @@ impl Seen {
 /// Where the surfaces within the view's frustum lie in the map.
 fn seen_range(scene: &Scene, view: &View) -> Seen {
     let planes = MapView::new(view.clip_from_world()).planes_ws;
-    let mut seen = Seen { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY, far_q: f32::INFINITY };
+    let mut seen = Seen { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY, far_q: f32::INFINITY, near_q: 0.0 };
     for_each_world_triangle(scene, |corners, _| {
         for p in clipped(&corners, &planes) {
             let l = scene.light.light_from_world(p);
@@ -142,6 +158,7 @@ fn seen_range(scene: &Scene, view: &View) -> Seen {
                 seen.low = seen.low.min(t);
                 seen.high = seen.high.max(t);
                 seen.far_q = seen.far_q.min(1.0 / l.z);
+                seen.near_q = seen.near_q.max(1.0 / l.z);
             }
         }
     });

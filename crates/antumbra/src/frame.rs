@@ -93,6 +93,9 @@ pub struct Frame {
     pub frustum: ShadowFrustum,
     /// Geometry.
     pub casters: Arc<Casters>,
+    /// True if no caster has moved since the last frame: techniques may then keep maps that they have drawn. False, the
+    /// default, is always safe. The light and the camera may move all the same.
+    pub casters_rest: bool,
     /// Receivers.
     pub geometry: GeometryInput,
     /// The result: `R32Float` with `STORAGE_BINDING`, the visible fraction of the light at each pixel.
@@ -119,7 +122,7 @@ impl Frame {
             mapped_at_creation: false,
         });
         let frustum = ShadowFrustum::around(&light, &casters.bounds());
-        let frame = Frame { view, light, frustum, casters, geometry, visibility, uniform };
+        let frame = Frame { view, light, frustum, casters, casters_rest: false, geometry, visibility, uniform };
         frame.write(gpu);
         Ok(frame)
     }
@@ -184,7 +187,7 @@ impl Frame {
 const ULP: f32 = 2.4e-7;
 
 /// World to light space in double precision: far from the origin the rounding of single precision would be visible.
-fn light_from_world(light: &RectLight) -> DMat4 {
+pub(crate) fn light_from_world(light: &RectLight) -> DMat4 {
     let (right, up, forward) = light.basis();
     let (right, up, forward) = (right.as_dvec3(), up.as_dvec3(), forward.as_dvec3());
     let center = light.center.as_dvec3();

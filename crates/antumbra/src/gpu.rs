@@ -32,6 +32,8 @@ pub struct Capabilities {
     pub conservative_rasterization: bool,
     /// Wave operations in compute. Without them workgroup memory is used.
     pub subgroups: bool,
+    /// Layers of a texture array that one render pass can draw. 1: a pass a layer.
+    pub layers_per_pass: u32,
     /// Largest side of a 2D texture, in texels.
     pub max_texture_size: u32,
 }
@@ -44,6 +46,10 @@ impl Capabilities {
             float32_blending: features.contains(wgpu::Features::FLOAT32_BLENDABLE),
             conservative_rasterization: features.contains(wgpu::Features::CONSERVATIVE_RASTERIZATION),
             subgroups: features.contains(wgpu::Features::SUBGROUP),
+            layers_per_pass: match features.contains(wgpu::Features::MULTIVIEW) {
+                true => limits.max_multiview_view_count.clamp(1, 32),
+                false => 1,
+            },
             max_texture_size: limits.max_texture_dimension_2d,
         }
     }
@@ -74,7 +80,8 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::FLOAT32_FILTERABLE)
     .union(wgpu::Features::FLOAT32_BLENDABLE)
     .union(wgpu::Features::CONSERVATIVE_RASTERIZATION)
-    .union(wgpu::Features::SUBGROUP);
+    .union(wgpu::Features::SUBGROUP)
+    .union(wgpu::Features::MULTIVIEW);
 
 /// All adapters that can run Antumbra, best first: the order that [`AdapterChoice::Index`] counts in. OpenGL is asked
 /// only where no other API has an adapter, so that no device is listed twice. `WGPU_BACKEND` narrows the choice.

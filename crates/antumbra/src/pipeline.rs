@@ -29,6 +29,11 @@ impl Bindable for wgpu::Sampler {
         wgpu::BindingResource::Sampler(self)
     }
 }
+impl Bindable for wgpu::BindingResource<'_> {
+    fn resource(&self) -> wgpu::BindingResource<'_> {
+        self.clone()
+    }
+}
 impl Bindable for crate::resource::Texture {
     fn resource(&self) -> wgpu::BindingResource<'_> {
         self.view.resource()
@@ -68,6 +73,15 @@ pub struct RenderTarget {
     pub colors: Vec<wgpu::TextureFormat>,
     /// A `Depth32Float` target with this comparison, if any.
     pub depth: Option<wgpu::CompareFunction>,
+    /// Layers that are drawn at once; 1 is an ordinary pass.
+    pub layers: u32,
+}
+
+impl RenderTarget {
+    /// The layers as a mask, as `wgpu` wants it; none for an ordinary pass.
+    pub fn layer_mask(layers: u32) -> Option<std::num::NonZeroU32> {
+        std::num::NonZeroU32::new(if layers > 1 { u32::MAX >> (32 - layers) } else { 0 })
+    }
 }
 
 impl ComputePipeline {
@@ -182,7 +196,7 @@ impl PipelineCache {
                 compilation_options: Default::default(),
                 targets: &colors,
             }),
-            multiview_mask: None,
+            multiview_mask: RenderTarget::layer_mask(target.layers),
             cache: None,
         });
         let entries: &[&str] = if has_fragment { &["vertex", "fragment"] } else { &["vertex"] };

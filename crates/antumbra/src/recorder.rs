@@ -1,6 +1,6 @@
 //! Recording passes into the host's command encoder: one call a pass, each labelled and timed.
 
-use crate::pipeline::{Binding, ComputePipeline};
+use crate::pipeline::{Binding, ComputePipeline, RenderTarget};
 use crate::{Error, Gpu};
 use wgpu_profiler::{GpuProfiler, GpuProfilerSettings, GpuTimerQueryResult};
 
@@ -65,12 +65,39 @@ impl<'a> Recorder<'a> {
         depth: Option<wgpu::RenderPassDepthStencilAttachment>,
         record: impl FnOnce(&Gpu, &mut wgpu::RenderPass),
     ) {
+        self.layered_pass(label, colors, depth, 1, record);
+    }
+
+    /// A render pass over `layers` layers of a depth array at once; what is in them stays.
+    pub fn layered_depth_pass(
+        &mut self,
+        label: &str,
+        view: &wgpu::TextureView,
+        layers: u32,
+        record: impl FnOnce(&Gpu, &mut wgpu::RenderPass),
+    ) {
+        let kept = wgpu::RenderPassDepthStencilAttachment {
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Load, store: wgpu::StoreOp::Store }),
+            ..depth_target(view)
+        };
+        self.layered_pass(label, &[], Some(kept), layers, record);
+    }
+
+    fn layered_pass(
+        &mut self,
+        label: &str,
+        colors: &[Option<wgpu::RenderPassColorAttachment>],
+        depth: Option<wgpu::RenderPassDepthStencilAttachment>,
+        layers: u32,
+        record: impl FnOnce(&Gpu, &mut wgpu::RenderPass),
+    ) {
         let query = self.timer.map(|t| t.profiler.begin_pass_query(label, self.encoder));
         let mut pass = self.encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(label),
             color_attachments: colors,
             depth_stencil_attachment: depth,
             timestamp_writes: query.as_ref().and_then(|q| q.render_pass_timestamp_writes()),
+            multiview_mask: RenderTarget::layer_mask(layers),
             ..Default::default()
         });
         record(self.gpu, &mut pass);

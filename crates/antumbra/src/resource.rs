@@ -35,6 +35,45 @@ impl Texture {
         Texture { view: texture.create_view(&Default::default()), texture }
     }
 
+    /// A texture of `layers` layers without mip levels; its view is an array whatever their number.
+    pub fn array(
+        gpu: &Gpu,
+        label: &str,
+        size: [u32; 2],
+        layers: u32,
+        format: wgpu::TextureFormat,
+        usage: wgpu::TextureUsages,
+    ) -> Texture {
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage,
+            view_formats: &[],
+        });
+        let whole = wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        };
+        Texture { view: texture.create_view(&whole), texture }
+    }
+
+    /// A view of `count` layers from `first` on: an array if they are several.
+    pub fn layers(&self, first: u32, count: u32) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(match count {
+                1 => wgpu::TextureViewDimension::D2,
+                _ => wgpu::TextureViewDimension::D2Array,
+            }),
+            base_array_layer: first,
+            array_layer_count: Some(count),
+            ..Default::default()
+        })
+    }
+
     /// A view of one mip level.
     pub fn mip(&self, level: u32) -> wgpu::TextureView {
         self.texture.create_view(&wgpu::TextureViewDescriptor {
@@ -78,6 +117,75 @@ pub fn storage_buffer(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
 /// A uniform buffer with the bytes of a host struct.
 pub fn uniform<T: crate::shader::HostStruct>(gpu: &Gpu, label: &str, value: &T) -> wgpu::Buffer {
     buffer_of(gpu, label, &value.uniform_bytes(), wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST)
+}
+
+/// The bytes of an array of host structs in a storage buffer.
+pub fn storage_bytes<T>(values: &[T]) -> Vec<u8>
+where
+    T: encase::ShaderType + encase::ShaderSize + encase::internal::WriteInto,
+{
+    let mut buffer = encase::StorageBuffer::new(Vec::new());
+    buffer.write(values).expect("a vector grows as needed");
+    buffer.into_inner()
+}
+
+/// A storage buffer that holds an array of host structs.
+pub fn storage_of<T>(gpu: &Gpu, label: &str, values: &[T]) -> wgpu::Buffer
+where
+    T: encase::ShaderType + encase::ShaderSize + encase::internal::WriteInto,
+{
+    let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC;
+    buffer_of(gpu, label, &storage_bytes(values), usage)
+}
+
+/// Uniforms of one kind for several passes of a frame, which are all written before the frame runs.
+pub struct UniformArray<T> {
+    buffer: wgpu::Buffer,
+    size: u64,
+    values: Vec<T>,
+}
+
+/// From one uniform to the next: what every device can bind at.
+const UNIFORM_STRIDE: u64 = 256;
+
+impl<T: crate::shader::HostStruct + Copy> UniformArray<T> {
+    /// The values, in order.
+    pub fn new(gpu: &Gpu, label: &str, values: &[T]) -> Self {
+        let mut bytes = Vec::new();
+        for value in values {
+            bytes.extend(value.uniform_bytes());
+            bytes.resize(bytes.len().next_multiple_of(UNIFORM_STRIDE as usize), 0);
+        }
+        UniformArray {
+            buffer: buffer_of(gpu, label, &bytes, wgpu::BufferUsages::UNIFORM),
+            size: values.first().map_or(0, |v| v.uniform_bytes().len() as u64),
+            values: values.to_vec(),
+        }
+    }
+
+    /// The value at `index`.
+    pub fn value(&self, index: u32) -> T {
+        self.values[index as usize]
+    }
+
+    /// What is bound for the value at `index`.
+    pub fn at(&self, index: u32) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.buffer,
+            offset: u64::from(index) * UNIFORM_STRIDE,
+            size: std::num::NonZero::new(self.size),
+        })
+    }
+
+    /// Number of values.
+    pub fn len(&self) -> u32 {
+        self.values.len() as u32
+    }
+
+    /// True if there is none.
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
 }
 
 /// Reads a buffer back; it needs `COPY_SRC`.

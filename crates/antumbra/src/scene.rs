@@ -140,6 +140,7 @@ fn push_batch(gpu: &Gpu, builder: &mut CastersBuilder, scene: &Scene, textured: 
         transform_stride: 16,
         first_item: 0,
         item_count: 0,
+        number: 0,
         alpha_cutoff: textured.and_then(|m| m.alpha_cutoff).unwrap_or(0.0),
         alpha: textured.map_or(1.0, |m| m.base_color.w),
         textured: u32::from(textured.is_some()),

@@ -3,16 +3,15 @@
 use super::print;
 use crate::cli::CompareArgs;
 use crate::error::CliError;
-use crate::measure::{self, Cost, Timing};
+use crate::measure::{self, Drawn, Timing};
 use crate::progress::{self, Progress};
 use crate::report::{self, Entry, Pass, Report};
 use crate::truth::{self, Truth};
 use crate::{output, setup, table};
 use antumbra::scene::SceneRenderer;
 use antumbra::{Gpu, Spec};
-use antumbra_metrics::{Image, MetricsError, RgbImage, figures, heat_map};
+use antumbra_metrics::RgbImage;
 use antumbra_scene::Scene;
-use pollster::block_on;
 
 /// Compares and writes the report.
 pub fn run(args: &CompareArgs) -> Result<(), CliError> {
@@ -32,55 +31,43 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
 }
 
 /// What a technique has made of the scene.
-struct Drawn<'a> {
+struct Shown<'a> {
     spec: &'a Spec,
-    cost: Cost,
-    visibility: Vec<f32>,
+    drawn: Drawn,
     picture: Vec<u8>,
 }
 
-fn draw_all<'a>(args: &'a CompareArgs, gpu: &Gpu, renderer: &SceneRenderer) -> Result<Vec<Drawn<'a>>, CliError> {
+fn draw_all<'a>(args: &'a CompareArgs, gpu: &Gpu, renderer: &SceneRenderer) -> Result<Vec<Shown<'a>>, CliError> {
     let specs: Vec<&Spec> = args.techniques.iter().flat_map(|t| &t.0).map(|t| &t.0).collect();
     let progress = Progress::new("Rendering");
     let count = specs.len() as f32;
     let draw = |(i, &spec): (usize, &&'a Spec)| {
-        let mut technique = block_on(gpu.checked(|| spec.make(gpu)))?;
-        let shown = |done| progress.set((i as f32 + done) / count);
-        let cost = measure::measure(gpu, renderer, &mut *technique, args.gpu.frames, shown)?;
-        let visibility = setup::visibility(gpu, renderer)?;
-        Ok(Drawn { spec, cost, visibility, picture: setup::picture(gpu, renderer)? })
+        let show = |done| progress.set((i as f32 + done) / count);
+        let drawn = measure::draw(gpu, renderer, spec, args.gpu.frames, show)?;
+        Ok(Shown { spec, drawn, picture: setup::picture(gpu, renderer)? })
     };
     specs.iter().enumerate().map(draw).collect()
 }
 
-impl Drawn<'_> {
+impl Shown<'_> {
     /// With its distance from the truth.
-    fn judged(self, size: [u32; 2], truth: &Truth) -> Result<(Entry, Timing), CliError> {
-        let [width, height] = size;
-        let reference = &truth.reference;
-        let compare = || {
-            let test = Image::new(width, height, &self.visibility)?;
-            let exact = Image::new(width, height, &reference.visibility)?;
-            Ok((figures(test, exact, &reference.valid)?, heat_map(test, exact, &reference.valid)?))
-        };
-        let wrong = |source: MetricsError| CliError::Metrics { spec: self.spec.text.clone(), source };
-        let (figures, heat_map) = compare().map_err(wrong)?;
-        let info = self.spec.technique;
+    fn judged(self, [width, height]: [u32; 2], truth: &Truth) -> Result<(Entry, Timing), CliError> {
+        let (spec, Drawn { cost, visibility, .. }) = (self.spec, self.drawn);
         let entry = Entry {
-            technique: info.name.to_owned(),
-            title: info.title.to_owned(),
-            source: info.source.to_owned(),
-            spec: self.spec.text.clone(),
-            settings: self.spec.settings.clone(),
-            figures,
-            passes: self.cost.passes.into_iter().map(reported).collect(),
-            total_ms: self.cost.total_ms,
-            total_bytes: self.cost.total_bytes,
+            technique: spec.technique.name.to_owned(),
+            title: spec.technique.title.to_owned(),
+            source: spec.technique.source.to_owned(),
+            spec: spec.text.clone(),
+            settings: spec.settings.clone(),
+            figures: truth.figures(&spec.text, &visibility)?,
+            heat_map: truth.heat_map(&spec.text, &visibility)?,
+            passes: cost.passes.into_iter().map(reported).collect(),
+            total_ms: cost.total_ms,
+            total_bytes: cost.total_bytes,
             picture: RgbImage { width, height, data: self.picture },
-            visibility: self.visibility,
-            heat_map,
+            visibility,
         };
-        Ok((entry, self.cost.timing))
+        Ok((entry, cost.timing))
     }
 }
 
@@ -118,7 +105,7 @@ fn assemble(
         height,
         adapter: gpu.info.name.clone(),
         software: gpu.is_software(),
-        command: command_line(),
+        command: setup::command_line(),
         truth: report::Truth {
             picture,
             light_samples: args.truth.light_samples,
@@ -129,11 +116,4 @@ fn assemble(
         },
         entries: entries.into_iter().map(|(entry, _)| entry).collect(),
     })
-}
-
-/// The command as it was typed; words with spaces in quotes.
-fn command_line() -> String {
-    let quoted = |word: String| if word.contains(' ') { format!("'{word}'") } else { word };
-    let words = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
-    std::iter::once("antumbra".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }

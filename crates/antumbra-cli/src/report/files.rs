@@ -20,29 +20,34 @@ pub fn write(report: &Report, to: &Path) -> Result<(), ReportError> {
     }
     files.push(("index.html".into(), page::html(report, &pictures).into_bytes())); // last: it links to the others
 
+    place(&files, to)
+}
+
+/// Puts files into a folder, which is made where it is missing; the last one comes when all others are there.
+pub fn place(files: &[(String, Vec<u8>)], to: &Path) -> Result<(), ReportError> {
     let is_new = !to.exists();
-    let written = place(&files, to);
+    let written = place_aside_first(files, to);
     if written.is_err() && is_new {
         let _ = fs::remove_dir(to); // the failure itself is the news
     }
     written
 }
 
-fn place(files: &[(String, Vec<u8>)], to: &Path) -> Result<(), ReportError> {
+fn place_aside_first(files: &[(String, Vec<u8>)], to: &Path) -> Result<(), ReportError> {
     let at = |path: &Path| {
         let path = path.to_owned();
         move |source: io::Error| ReportError::Write { path, source }
     };
     fs::create_dir_all(to).map_err(at(to))?;
     let aside = tempfile::Builder::new().prefix(".report-").tempdir_in(to).map_err(at(to))?;
-    fs::create_dir(aside.path().join("pictures")).map_err(at(to))?;
+    let make_folder = |file: &Path| fs::create_dir_all(file.parent().unwrap_or(to));
     for (name, content) in files {
-        fs::write(aside.path().join(name), content).map_err(at(&to.join(name)))?;
+        let file = aside.path().join(name);
+        make_folder(&file).and_then(|()| fs::write(&file, content)).map_err(at(&to.join(name)))?;
     }
-    let pictures = to.join("pictures");
-    fs::create_dir_all(&pictures).map_err(at(&pictures))?;
     for (name, _) in files {
-        fs::rename(aside.path().join(name), to.join(name)).map_err(at(&to.join(name)))?;
+        let file = to.join(name);
+        make_folder(&file).and_then(|()| fs::rename(aside.path().join(name), &file)).map_err(at(&file))?;
     }
     Ok(())
 }

@@ -1,14 +1,17 @@
 //! The report of `antumbra compare`: one page that needs nothing else, the figures as JSON and CSV, and the pictures.
 //!
-//! [`write`] is all that there is to call. The page is made of compile-time templates, a style sheet and a script that
+//! [`write`] is all that there is to call for it; other pages are made of the same parts. A page is made of compile-time templates, a style sheet and a script that
 //! lie beside this file; the pictures are embedded in it.
 
+mod axes;
 mod cards;
 mod files;
+pub mod frame;
+pub mod lines;
 mod page;
-mod pictures;
+pub mod pictures;
 mod plot;
-mod text;
+pub mod text;
 
 #[cfg(test)]
 mod tests;
@@ -18,7 +21,8 @@ use std::path::PathBuf;
 use antumbra_metrics::{Figures, RgbImage};
 use serde::Serialize;
 
-pub use files::write;
+pub use files::{place, write};
+pub use lines::Lines;
 
 /// Everything that a comparison has found. Pictures are row-major with row 0 on top.
 #[derive(Clone, Debug, Serialize)]

@@ -1,91 +1,64 @@
 //! The page: head, table, plot and the frame of the comparison.
 
 use antumbra_metrics::Figures;
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 
 use super::pictures::Pictures;
 use super::plot::{self, Point};
-use super::{Entry, Report, cards, text};
+use super::{Entry, Report, cards, frame, text};
 
 /// The whole page, needing nothing else.
 pub fn html(report: &Report, pictures: &[Pictures]) -> String {
     let labels = report.labels();
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (report.scene) " · Antumbra" }
-                style { (PreEscaped(include_str!("style.css"))) }
-            }
-            body {
-                (header(report))
-                main {
-                    section #figures { (lead(report, &labels)) (table(report, &labels)) }
-                    section #plot { h2 { "Error against cost" } (plot_of(report, &labels)) }
-                    section #compare { (comparison(report, &labels)) }
-                    section #techniques {
-                        h2 { "Every technique" }
-                        (cards::truth(report, &pictures[0]))
-                        @for (i, entry) in report.entries.iter().enumerate() {
-                            (cards::entry(report, entry, &labels[i], i + 1, &pictures[i + 1]))
-                        }
-                    }
-                }
-                footer {
-                    p {
-                        "The same figures as " a href="results.json" { "JSON" } " and " a href="results.csv" { "CSV" }
-                        "; the pictures as files in " a href="pictures/" { "pictures" } "."
-                    }
-                }
-                script { (PreEscaped(include_str!("script.js"))) }
+    let main = html! {
+        section #figures.figures { (lead(report, &labels)) (table(report, &labels)) }
+        section #plot.framed { h2 { "Error against cost" } (plot_of(report, &labels)) }
+        section #compare { (comparison(report, &labels)) }
+        section #techniques {
+            h2 { "Every technique" }
+            (cards::truth(report, &pictures[0]))
+            @for (i, entry) in report.entries.iter().enumerate() {
+                (cards::entry(report, entry, &labels[i], i + 1, &pictures[i + 1]))
             }
         }
     };
-    page.into_string()
+    let footer = html! {
+        p {
+            "The same figures as " a href="results.json" { "JSON" } " and " a href="results.csv" { "CSV" }
+            "; the pictures as files in " a href="pictures/" { "pictures" } "."
+        }
+    };
+    frame::page(&report.scene, header(report), main, footer, &[include_str!("compare.js")])
 }
 
 fn header(report: &Report) -> Markup {
     let truth = &report.truth;
+    let links = [
+        ("#figures", "Figures"),
+        ("#plot", "Cost"),
+        ("#compare", "Compare"),
+        ("#techniques", "Techniques"),
+        ("results.json", "JSON"),
+        ("results.csv", "CSV"),
+    ];
     html! {
-        header {
-            div.brand {
-                span.mark aria-hidden="true" {}
-                span { "Antumbra" }
-                nav {
-                    a href="#figures" { "Figures" } a href="#plot" { "Cost" } a href="#compare" { "Compare" }
-                    a href="#techniques" { "Techniques" }
-                    a href="results.json" { "JSON" } a href="results.csv" { "CSV" }
-                    button #scheme type="button" title="Light or dark" aria-label="Light or dark" { "◐" }
-                }
-            }
-            h1 { (report.scene) }
-            dl.facts {
-                div { dt { "Triangles" } dd { (text::count(report.triangles)) } }
-                div { dt { "Pictures" } dd { (report.width) " × " (report.height) } }
-                div.wide {
-                    dt { "Adapter" }
-                    dd { (report.adapter) @if report.software { " " span.tag { "software" } } }
-                }
-                div.wide {
-                    dt { "Truth" }
-                    dd {
-                        (text::count(truth.light_samples.into())) " shadow rays and " (truth.pixel_samples)
-                        " sub-pixels a pixel, ± " (text::figure(truth.error_estimate)) ", traced in "
-                        (text::seconds(truth.seconds))
-                    }
-                }
-            }
-            div.command { code { (report.command) } button type="button" data-copy { "Copy" } }
-            @if report.software {
-                p.notice {
-                    b { "Software adapter. " }
-                    "Absolute milliseconds of a software adapter say nothing about a GPU; compare ratios. "
-                    "Errors and memory hold everywhere."
+        (frame::brand(&links))
+        h1 { (report.scene) }
+        dl.facts {
+            div { dt { "Triangles" } dd { (text::count(report.triangles)) } }
+            div { dt { "Pictures" } dd { (report.width) " × " (report.height) } }
+            (frame::adapter(&report.adapter, report.software))
+            div.wide {
+                dt { "Truth" }
+                dd {
+                    (text::count(truth.light_samples.into())) " shadow rays and " (truth.pixel_samples)
+                    " sub-pixels a pixel, ± " (text::figure(truth.error_estimate)) ", traced in "
+                    (text::seconds(truth.seconds))
                 }
             }
         }
+        (frame::command(&report.command))
+        @if report.software { (frame::software_notice()) }
     }
 }
 

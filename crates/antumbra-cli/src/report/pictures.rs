@@ -75,7 +75,23 @@ fn grey(report: &Report, values: &[f32]) -> Result<Vec<u8>, ReportError> {
     png(&bytes, report.width, report.height, ExtendedColorType::L8)
 }
 
-fn rgb(picture: &RgbImage) -> Result<Vec<u8>, ReportError> {
+/// A picture of half the size, each pixel the mean of up to four.
+pub fn halved(picture: &RgbImage) -> RgbImage {
+    let (width, height) = (picture.width.div_ceil(2), picture.height.div_ceil(2));
+    let at = |x: u32, y: u32, c: u32| {
+        let (x, y) = (x.min(picture.width - 1), y.min(picture.height - 1));
+        u32::from(picture.data[((y * picture.width + x) * 3 + c) as usize])
+    };
+    let mean = |x: u32, y: u32, c: u32| {
+        let sum: u32 = [(0, 0), (1, 0), (0, 1), (1, 1)].iter().map(|(i, j)| at(2 * x + i, 2 * y + j, c)).sum();
+        ((sum + 2) / 4) as u8
+    };
+    let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    RgbImage { width, height, data: pixels.flat_map(|(x, y)| [0, 1, 2].map(|c| mean(x, y, c))).collect() }
+}
+
+/// A picture as PNG.
+pub fn rgb(picture: &RgbImage) -> Result<Vec<u8>, ReportError> {
     png(&picture.data, picture.width, picture.height, ExtendedColorType::Rgb8)
 }
 

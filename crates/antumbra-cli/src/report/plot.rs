@@ -1,20 +1,14 @@
-//! Error against milliseconds as SVG, drawn by hand so that its colours follow the page's scheme and its points are
-//! links; a plotting library's SVG knows neither.
+//! Error against milliseconds, one point a technique; the points are links.
 
 use maud::{Markup, html};
 
+use super::axes::{Axis, BOTTOM, HEIGHT, LEFT, TOP, Titles, WIDTH, grid};
 use super::text;
 
-const WIDTH: f64 = 960.0;
-const HEIGHT: f64 = 460.0;
-const LEFT: f64 = 72.0;
-const RIGHT: f64 = WIDTH - 28.0;
-const TOP: f64 = 20.0;
-const BOTTOM: f64 = HEIGHT - 56.0;
 /// Width of a label's letter and height of its line, in the units above.
 const LETTER: (f64, f64) = (7.8, 16.0);
-/// A logarithm has no zero: what costs or errs nothing is drawn at this.
-const FLOOR: f64 = 1e-5;
+/// Room beside the points for their labels.
+const ROOM: f64 = 0.12;
 
 /// One technique in the plot.
 pub struct Point {
@@ -26,38 +20,6 @@ pub struct Point {
     pub ms: f64,
     /// Average error in [0, 1].
     pub error: f64,
-}
-
-/// A logarithmic axis from `low` to `high`, drawn from `start` to `end`.
-struct Axis {
-    low: f64,
-    high: f64,
-    start: f64,
-    end: f64,
-}
-
-impl Axis {
-    fn around(values: impl Iterator<Item = f64>, start: f64, end: f64) -> Self {
-        let (low, high) = values.fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(v), high.max(v)));
-        // Room for the labels, and at least half a decade in all, or one technique would have no scale.
-        let margin = (high / low).powf(0.12).max(1.8);
-        Self { low: low / margin, high: high * margin, start, end }
-    }
-
-    fn place(&self, value: f64) -> f64 {
-        self.start + (value / self.low).ln() / (self.high / self.low).ln() * (self.end - self.start)
-    }
-
-    /// Round values: as many mantissas a decade as leave the axis readable.
-    fn ticks(&self) -> Vec<f64> {
-        let decades = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
-        let with = |mantissas: &[f64]| -> Vec<f64> {
-            let all = decades.clone().flat_map(|d| mantissas.iter().map(move |m| m * 10f64.powi(d)));
-            all.filter(|v| (self.low..=self.high).contains(v)).collect()
-        };
-        let choices: [&[f64]; 3] = [&[1.0], &[1.0, 2.0, 5.0], &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0]];
-        choices.iter().map(|m| with(m)).find(|ticks| ticks.len() >= 4).unwrap_or_else(|| with(choices[2]))
-    }
 }
 
 /// A box of the picture that is taken: left, top, right, bottom.
@@ -139,17 +101,17 @@ fn is_best(point: &Point, points: &[Point]) -> bool {
 
 /// The plot; points that nothing beats in both are filled and joined.
 pub fn scatter(points: &[Point]) -> Markup {
-    let (ms, error) = (|p: &Point| p.ms.max(FLOOR), |p: &Point| p.error.max(FLOOR));
-    let x = Axis::around(points.iter().map(ms), LEFT, RIGHT);
-    let y = Axis::around(points.iter().map(error), BOTTOM, TOP);
-    let dots: Vec<_> = points.iter().map(|p| (x.place(ms(p)), y.place(error(p)))).collect();
+    let x = Axis::across(points.iter().map(|p| p.ms), ROOM);
+    let y = Axis::upwards(points.iter().map(|p| p.error), ROOM);
+    let dots: Vec<_> = points.iter().map(|p| (x.place(p.ms), y.place(p.error))).collect();
     let labels: Vec<_> = points.iter().map(|p| p.label.as_str()).collect();
     let areas = place_labels(&dots, &labels);
     let best: Vec<bool> = points.iter().map(|p| is_best(p, points)).collect();
+    let titles = Titles { x: "GPU milliseconds a frame", y: "average error", less_is_better: true };
     html! {
         svg.plot viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img"
             aria-label="Average error against GPU milliseconds, both logarithmic; lower left is better" {
-            (grid(&x, &y))
+            (grid(&x, &y, &titles))
             polyline.front points=(front(&dots, &best)) {}
             @for (dot, area) in dots.iter().zip(&areas) { (leader(*dot, area)) }
             @for (((point, dot), area), best) in points.iter().zip(&dots).zip(&areas).zip(&best) {
@@ -173,27 +135,6 @@ fn front(dots: &[(f64, f64)], best: &[bool]) -> String {
         last = Some(y);
     }
     path
-}
-
-fn grid(x: &Axis, y: &Axis) -> Markup {
-    let label = |v: f64| format!("{}", (v * 1e9).round() / 1e9);
-    html! {
-        @for tick in x.ticks() {
-            @let at = format!("{:.1}", x.place(tick));
-            line.grid x1=(at) x2=(at) y1=(TOP) y2=(BOTTOM) {}
-            text.tick x=(at) y=(BOTTOM + 20.0) text-anchor="middle" { (label(tick)) }
-        }
-        @for tick in y.ticks() {
-            @let at = y.place(tick);
-            line.grid x1=(LEFT) x2=(RIGHT) y1=(format!("{at:.1}")) y2=(format!("{at:.1}")) {}
-            text.tick x=(LEFT - 10.0) y=(format!("{:.1}", at + 4.0)) text-anchor="end" { (label(tick)) }
-        }
-        text.axis x=(RIGHT) y=(BOTTOM + 42.0) text-anchor="end" { "GPU milliseconds a frame, logarithmic →" }
-        text.axis x=(LEFT) y=(BOTTOM + 42.0) { "↙ better" }
-        text.axis transform=(format!("translate(16 {TOP}) rotate(-90)")) text-anchor="end" {
-            "average error, logarithmic →"
-        }
-    }
 }
 
 /// A line to a label that stands off.
@@ -224,16 +165,6 @@ mod tests {
 
     fn point(ms: f64, error: f64) -> Point {
         Point { label: "adaptive-sampling".into(), link: "#".into(), ms, error }
-    }
-
-    #[test]
-    fn ticks_are_round_and_few() {
-        for (low, high) in [(0.1, 0.13), (0.01, 0.2), (0.3, 900.0), (1e-5, 1.0)] {
-            let axis = Axis::around([low, high].into_iter(), 0.0, 1.0);
-            let ticks = axis.ticks();
-            assert!((2..=12).contains(&ticks.len()), "{low}..{high}: {ticks:?}");
-            assert!(ticks.iter().all(|t| (0.0..=1.0).contains(&axis.place(*t))));
-        }
     }
 
     #[test]

@@ -66,7 +66,7 @@ impl DepthMap {
         let view = MapView::new(clip_from_world);
         recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
         self.culling.record(recorder, "cluster culling", casters, &self.view)?;
-        let target = RenderTarget { colors: Vec::new(), depth: Some(wgpu::CompareFunction::Greater) };
+        let target = RenderTarget { colors: Vec::new(), depth: Some(wgpu::CompareFunction::Greater), layers: 1 };
         let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>();
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
         let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;

@@ -6,4 +6,5 @@ pub mod culling;
 pub mod depth_map;
 pub mod depth_pyramid;
 pub mod geometry_buffer;
+pub mod light_maps;
 pub mod picture;

@@ -5,6 +5,12 @@ use crate::technique::{TechniqueInfo, entry};
 pub mod hard;
 pub mod pcf;
 pub mod pcss;
+pub mod uniform_sampling;
 
 /// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
-pub const TECHNIQUES: &[TechniqueInfo] = &[entry::<hard::Hard>(), entry::<pcf::Pcf>(), entry::<pcss::Pcss>()];
+pub const TECHNIQUES: &[TechniqueInfo] = &[
+    entry::<hard::Hard>(),
+    entry::<pcf::Pcf>(),
+    entry::<pcss::Pcss>(),
+    entry::<uniform_sampling::UniformSampling>(),
+];

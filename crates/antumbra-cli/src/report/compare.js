@@ -1,6 +1,3 @@
-"use strict";
-const $ = (selector, within = document) => within.querySelector(selector);
-const $$ = (selector, within = document) => [...within.querySelectorAll(selector)];
 const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
 
 // Table: a click sorts by the column, best first; a second click turns the order round.
@@ -22,15 +19,6 @@ for (const heading of $$("#figures thead th")) {
     $("#figures tbody").append(...rows);
   });
 }
-
-$("[data-copy]").addEventListener("click", async event => {
-  await navigator.clipboard?.writeText($(".command code").textContent);
-  event.target.textContent = "Copied";
-});
-$("#scheme").addEventListener("click", () => {
-  const dark = getComputedStyle(document.body).backgroundColor === "rgb(18, 19, 23)";
-  document.documentElement.dataset.scheme = dark ? "light" : "dark";
-});
 
 // Comparison. The state is kept in the address, so that a link shows what its sender saw.
 const stage = $("#stage"), canvas = $("canvas", stage), context = canvas.getContext("2d");

@@ -1,0 +1,166 @@
+//! Measuring techniques on scenes.
+
+use crate::cli::{BenchArgs, TruthArgs};
+use crate::error::CliError;
+use crate::measure::{self, Cost, Drawn, Timing};
+use crate::progress::Progress;
+use crate::report::text;
+use crate::truth::{self, Truth};
+use crate::{progress, setup};
+use antumbra::scene::SceneRenderer;
+use antumbra::{Gpu, Spec};
+use antumbra_metrics::{Figures, RgbImage};
+use antumbra_scene::Scene;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Truth between these is penumbra that a viewer can tell from light and from umbra.
+const PENUMBRA: std::ops::Range<f32> = 0.01..0.99;
+
+/// Where suites measure.
+pub struct Lab<'a> {
+    /// What the command line says.
+    pub args: &'a BenchArgs,
+    /// What draws.
+    pub gpu: &'a Gpu,
+}
+
+/// A scene at one size, and what several techniques made of it one after another.
+#[derive(Clone, Debug, Serialize)]
+pub struct Trial {
+    /// Its name in the suite.
+    pub name: String,
+    /// The scene that it was made from.
+    pub scene: String,
+    /// Triangles of the scene.
+    pub triangles: usize,
+    /// Width of the picture, pixels.
+    pub width: u32,
+    /// Height of the picture, pixels.
+    pub height: u32,
+    /// Part of the valid pixels whose true visibility is neither 0 nor 1, but for a hundredth.
+    pub penumbra: f64,
+    /// Shadow rays of a pixel of the truth.
+    pub light_samples: u32,
+    /// Primary rays of a pixel of the truth.
+    pub pixel_samples: u32,
+    /// The tracer's estimate of its own mean error in visibility.
+    pub truth_error: f64,
+    /// The scene shaded with the truth.
+    #[serde(skip)]
+    pub picture: RgbImage,
+    /// One entry a technique.
+    pub runs: Vec<Run>,
+}
+
+/// One technique on one scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct Run {
+    /// Its name.
+    pub technique: &'static str,
+    /// Its name and settings as one would type them.
+    pub spec: String,
+    /// All settings.
+    pub settings: serde_json::Value,
+    /// How far from the truth it is.
+    pub figures: Figures,
+    /// What it says of its work, such as the number of maps.
+    pub work: BTreeMap<&'static str, f64>,
+    /// What it took.
+    #[serde(flatten)]
+    pub cost: Cost,
+}
+
+impl Lab<'_> {
+    /// The command line's size, or what the suite likes best.
+    pub fn size(&self, own: [u32; 2]) -> [u32; 2] {
+        self.args.size.map_or(own, |size| size.0)
+    }
+
+    /// Measures techniques on a scene, next to one another, and then traces what they are judged by.
+    pub fn trial(
+        &self,
+        name: &str,
+        scene: &Scene,
+        size: [u32; 2],
+        specs: &[Spec],
+        how: &TruthArgs,
+    ) -> Result<Trial, CliError> {
+        self.gpu.check_size("picture", size[0], size[1])?;
+        let renderer = setup::renderer(self.gpu, scene, size)?;
+        let drawn = self.draw_all(name, &renderer, specs)?;
+        let truth = truth::of(scene, size, how)?;
+        progress::check_cancelled()?;
+        let runs = specs.iter().zip(drawn).map(|(spec, drawn)| Run::new(spec, drawn, &truth));
+        let runs = runs.collect::<Result<_, _>>()?;
+        renderer.write_visibility(self.gpu, &truth.reference.visibility);
+        let data = setup::picture(self.gpu, &renderer)?;
+        Ok(Trial {
+            name: name.to_owned(),
+            scene: scene.name.clone(),
+            triangles: scene.triangle_count(),
+            width: size[0],
+            height: size[1],
+            penumbra: penumbra(&truth),
+            light_samples: how.light_samples,
+            pixel_samples: how.pixel_samples,
+            truth_error: truth.reference.rms_error(),
+            picture: RgbImage { width: size[0], height: size[1], data },
+            runs,
+        })
+    }
+
+    fn draw_all(&self, name: &str, renderer: &SceneRenderer, specs: &[Spec]) -> Result<Vec<Drawn>, CliError> {
+        let progress = Progress::new(format!("Measuring {name}"));
+        let draw = |(i, spec)| {
+            let show = |done| progress.set((i as f32 + done) / specs.len() as f32);
+            measure::draw(self.gpu, renderer, spec, self.args.gpu.frames, show)
+        };
+        specs.iter().enumerate().map(draw).collect()
+    }
+}
+
+/// The part of the valid pixels that is in penumbra.
+fn penumbra(truth: &Truth) -> f64 {
+    let reference = &truth.reference;
+    let valid = || reference.visibility.iter().zip(&reference.valid).filter(|(_, valid)| **valid);
+    valid().filter(|(v, _)| PENUMBRA.contains(v)).count() as f64 / valid().count().max(1) as f64
+}
+
+impl Trial {
+    /// The run of this spec.
+    pub fn run(&self, spec: &str) -> Option<&Run> {
+        self.runs.iter().find(|run| run.spec == spec)
+    }
+}
+
+impl Run {
+    fn new(spec: &Spec, drawn: Drawn, truth: &Truth) -> Result<Run, CliError> {
+        Ok(Run {
+            technique: spec.technique.name,
+            spec: spec.text.clone(),
+            settings: spec.settings.clone(),
+            figures: truth.figures(&spec.text, &drawn.visibility)?,
+            work: drawn.work.into_iter().collect(),
+            cost: drawn.cost,
+        })
+    }
+
+    /// How many times as fast as `base` it is; both sides by the same clock.
+    pub fn speed_over(&self, base: &Run) -> f64 {
+        let by_gpu = [self, base].iter().all(|run| run.cost.timing == Timing::Gpu);
+        let ms = |run: &Run| if by_gpu { run.cost.total_ms } else { run.cost.wall_ms };
+        ms(base) / ms(self)
+    }
+
+    /// Milliseconds, with a star if they are wall time.
+    pub fn ms(&self) -> String {
+        let star = if self.cost.timing == Timing::Wall { "*" } else { "" };
+        text::ms(self.cost.total_ms) + star
+    }
+
+    /// A figure of its work as a whole number; a dash if the technique does not tell.
+    pub fn count(&self, of: &str) -> String {
+        self.work.get(of).map_or_else(|| "–".to_owned(), |n| text::count(n.round() as u64))
+    }
+}

@@ -1,0 +1,15 @@
+//! What suites are made with: a laboratory that measures, findings to fill, and the files that are written of them.
+
+mod files;
+mod findings;
+mod lab;
+mod markdown;
+mod page;
+
+#[cfg(test)]
+mod tests;
+
+pub use files::write;
+pub use findings::{Context, Findings, Group, Part, Ratio, Shown, Table};
+pub use lab::{Lab, Run, Trial};
+pub use markdown::terminal;

@@ -1,0 +1,105 @@
+//! The page of a suite.
+
+use super::{Context, Findings, Shown, Table, Trial};
+use crate::report::{ReportError, frame, lines, pictures, text};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use maud::{Markup, html};
+
+/// The whole page, needing nothing else.
+pub fn html(context: &Context, findings: &Findings) -> Result<String, ReportError> {
+    let thumbnails: Vec<String> = findings.trials.iter().map(thumbnail).collect::<Result<_, _>>()?;
+    let main = html! {
+        @for (i, part) in findings.parts.iter().enumerate() {
+            section.figures.framed id=(anchor(i)) {
+                h2 { (part.title) }
+                p.lead { (part.text) }
+                @for shown in &part.shown {
+                    @match shown {
+                        Shown::Pictures(of) => (pictures_of(findings, of, &thumbnails)),
+                        Shown::Table(table) => (drawn_table(table)),
+                        Shown::Lines(curves) => (lines::plot(curves)),
+                    }
+                }
+            }
+        }
+    };
+    let [json, csv, md] = ["json", "csv", "md"].map(|ending| format!("{}.{ending}", context.suite));
+    let footer = html! {
+        p {
+            "Every measurement as " a href=(json) { "JSON" } " and " a href=(csv) { "CSV" } "; the tables as "
+            a href=(md) { "Markdown" } "."
+        }
+    };
+    Ok(frame::page(context.title, header(context, findings), main, footer, &[]))
+}
+
+fn anchor(part: usize) -> String {
+    format!("part-{}", part + 1)
+}
+
+fn header(context: &Context, findings: &Findings) -> Markup {
+    let anchors: Vec<String> = (0..findings.parts.len()).map(|i| format!("#{}", anchor(i))).collect();
+    let links: Vec<(&str, &str)> =
+        anchors.iter().zip(&findings.parts).map(|(to, part)| (to.as_str(), part.title.as_str())).collect();
+    html! {
+        (frame::brand(&links))
+        h1 { (context.title) }
+        dl.facts {
+            div { dt { "Paper" } dd { (context.source) } }
+            (frame::adapter(&context.adapter, context.software))
+            div { dt { "Milliseconds" } dd { (findings.clock()) } }
+            div { dt { "Frames" } dd { "median of " (context.frames) } }
+        }
+        (frame::command(&context.command))
+        @if context.software { (frame::software_notice()) }
+        p.lead.outcome { (findings.lead) }
+    }
+}
+
+/// Half of the picture each side, embedded.
+fn thumbnail(trial: &Trial) -> Result<String, ReportError> {
+    let png = pictures::rgb(&pictures::halved(&trial.picture))?;
+    Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png)))
+}
+
+fn pictures_of(findings: &Findings, of: &[usize], thumbnails: &[String]) -> Markup {
+    let shown = of.iter().filter_map(|i| Some((findings.trials.get(*i)?, thumbnails.get(*i)?)));
+    html! {
+        div.gallery.scenes {
+            @for (trial, thumbnail) in shown {
+                figure {
+                    img src=(thumbnail) width=(trial.width) height=(trial.height) alt=(format!("{}: the truth", trial.name));
+                    figcaption {
+                        b { (trial.name) }
+                        span { (trial.scene) ", " (text::count(trial.triangles as u64)) " triangles" }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn drawn_table(table: &Table) -> Markup {
+    html! {
+        div.scroll {
+            table {
+                thead { tr { @for (head, about) in &table.heads { th scope="col" title=(about) { (head) } } } }
+                @for group in &table.groups {
+                    tbody {
+                        @if !group.title.is_empty() {
+                            tr.group { th scope="rowgroup" colspan=(table.heads.len()) { (group.title) } }
+                        }
+                        @for row in &group.rows {
+                            tr {
+                                @for (i, cell) in row.iter().enumerate() {
+                                    @if i == 0 { th scope="row" { code { (cell) } } } @else { td { (cell) } }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
