@@ -1,5 +1,6 @@
 //! The command line.
 
+use crate::bench::{self, Suite};
 use crate::output::{ValuesFile, npy_path, png_path};
 use antumbra::{AdapterChoice, Spec, techniques::TECHNIQUES};
 use clap::{Args, Parser, Subcommand};
@@ -24,6 +25,9 @@ pub enum Command {
     Reference(ReferenceArgs),
     /// Compare techniques with the truth: error, milliseconds and megabytes, as a table and as a report with pictures
     Compare(CompareArgs),
+    /// Measure the tables and curves of papers anew, theirs beside ours
+    #[command(after_help = bench::list())]
+    Bench(BenchArgs),
     /// List the techniques, their settings and where they come from
     Techniques(ListArgs),
     /// List the built-in scenes and their parameters
@@ -87,6 +91,24 @@ pub struct CompareArgs {
     pub gpu: GpuArgs,
 }
 
+/// `antumbra bench`.
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// Suites to run, listed below [default: all]
+    #[arg(value_name = "SUITE", value_parser = bench::find)]
+    pub suites: Vec<&'static Suite>,
+    /// Folder of the results, made if need be: for each suite a page, a table in Markdown, JSON and CSV
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Size of the pictures in pixels [default: the paper's]
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    #[command(flatten)]
+    pub truth: TruthArgs,
+    #[command(flatten)]
+    pub gpu: GpuArgs,
+}
+
 /// `antumbra techniques`, `scenes` and `adapters`.
 #[derive(Debug, Args)]
 pub struct ListArgs {
@@ -114,13 +136,13 @@ pub struct GpuArgs {
     /// Part of an adapter's name, or its number in `antumbra adapters` [default: the best]
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<AdapterChoice>,
-    /// Frames whose median time counts, after two that warm up
+    /// Frames whose median time counts, after two that warm up (one if it takes over a second)
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub frames: u32,
 }
 
 /// How finely the truth is traced, and where it is kept.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub struct TruthArgs {
     /// Shadow rays of a pixel in all, shared among its pixel samples
     #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]

@@ -1,6 +1,7 @@
 //! Soft shadows from the command line: render, reference, compare, and lists of what there is.
 #![deny(missing_docs)]
 
+mod bench;
 mod cli;
 mod commands;
 mod error;

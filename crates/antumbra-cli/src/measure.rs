@@ -9,8 +9,11 @@ use pollster::block_on;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Frames before those that count: the first compiles pipelines and makes textures.
+/// Frames before those that count: the first compiles pipelines and makes textures, the second brings the clock up.
 const WARM_UP: u32 = 2;
+
+/// A first frame that takes this long, in milliseconds, has brought the clock up too.
+const LONG: f64 = 1000.0;
 
 /// How far, relative to the wall time, GPU times of a software adapter may be off before they are not believed.
 const BELIEVED: f64 = 0.25;
@@ -88,7 +91,8 @@ pub fn draw(
     Ok(Drawn { cost, visibility: setup::visibility(gpu, renderer)?, work })
 }
 
-/// Draws frames of a technique until `frames` of them have been timed. The last one's visibility stays.
+/// Draws frames of a technique until `frames` of them have been timed, or a single one without warming up if `frames`
+/// is 0. The last one's visibility stays.
 pub fn measure(
     gpu: &Gpu,
     renderer: &SceneRenderer,
@@ -98,17 +102,21 @@ pub fn measure(
 ) -> Result<Cost, CliError> {
     let mut timer = block_on(gpu.checked(|| Timer::new(gpu)))?;
     let (mut host, mut own, mut wall) = (Samples::default(), Samples::default(), Vec::new());
-    let all = WARM_UP + frames;
-    for frame in 0..all {
+    let mut warm_up = if frames == 0 { 0 } else { WARM_UP };
+    let mut frame = 0;
+    while frame < warm_up + frames.max(1) {
         progress::check_cancelled()?;
         let (host_times, _) = submit(gpu, &mut timer, |recorder| renderer.record_geometry(recorder))?;
         let (own_times, wall_ms) = submit(gpu, &mut timer, |recorder| renderer.record_shadow(technique, recorder))?;
-        if frame >= WARM_UP {
+        if frame >= warm_up {
             host.push(host_times);
             own.push(own_times);
             wall.push(wall_ms);
+        } else if wall_ms > LONG {
+            warm_up = 1;
         }
-        on_frame((frame + 1) as f32 / all as f32);
+        frame += 1;
+        on_frame(frame as f32 / (warm_up + frames.max(1)) as f32);
     }
     let mut host = host.passes(true);
     if let Some(pass) = host.first_mut() {

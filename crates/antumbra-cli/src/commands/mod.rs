@@ -1,5 +1,6 @@
 //! The commands: each takes its arguments and works through to the end.
 
+mod bench;
 mod compare;
 mod list;
 mod reference;
@@ -15,6 +16,7 @@ pub fn run(command: &Command) -> Result<(), CliError> {
         Command::Render(args) => render::run(args),
         Command::Reference(args) => reference::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Bench(args) => bench::run(args),
         Command::Techniques(args) => list::techniques(args.json),
         Command::Scenes(args) => list::scenes(args.json),
         Command::Adapters(args) => list::adapters(args.json),

@@ -2,6 +2,7 @@
 
 use crate::technique::{TechniqueInfo, entry};
 
+pub mod adaptive_sampling;
 pub mod hard;
 pub mod pcf;
 pub mod pcss;
@@ -13,4 +14,5 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<pcf::Pcf>(),
     entry::<pcss::Pcss>(),
     entry::<uniform_sampling::UniformSampling>(),
+    entry::<adaptive_sampling::AdaptiveSampling>(),
 ];

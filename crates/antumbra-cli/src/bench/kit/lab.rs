@@ -25,6 +25,22 @@ pub struct Lab<'a> {
     pub gpu: &'a Gpu,
 }
 
+/// What to measure.
+pub struct Order<'a> {
+    /// Name of the trial in the suite.
+    pub name: &'a str,
+    /// What is drawn.
+    pub scene: &'a Scene,
+    /// Size of the picture in pixels.
+    pub size: [u32; 2],
+    /// Which techniques draw.
+    pub specs: &'a [Spec],
+    /// How many frames of each count; 0 draws one without warming up, where only the error matters.
+    pub frames: u32,
+    /// How the truth is traced.
+    pub truth: &'a TruthArgs,
+}
+
 /// A scene at one size, and what several techniques made of it one after another.
 #[derive(Clone, Debug, Serialize)]
 pub struct Trial {
@@ -46,6 +62,8 @@ pub struct Trial {
     pub pixel_samples: u32,
     /// The tracer's estimate of its own mean error in visibility.
     pub truth_error: f64,
+    /// How many frames of each technique count; with 0 the times include what the first frame prepares.
+    pub frames: u32,
     /// The scene shaded with the truth.
     #[serde(skip)]
     pub picture: RgbImage,
@@ -78,45 +96,51 @@ impl Lab<'_> {
     }
 
     /// Measures techniques on a scene, next to one another, and then traces what they are judged by.
-    pub fn trial(
-        &self,
-        name: &str,
-        scene: &Scene,
-        size: [u32; 2],
-        specs: &[Spec],
-        how: &TruthArgs,
-    ) -> Result<Trial, CliError> {
+    pub fn trial(&self, order: &Order) -> Result<Trial, CliError> {
+        let Order { scene, size, specs, .. } = *order;
         self.gpu.check_size("picture", size[0], size[1])?;
         let renderer = setup::renderer(self.gpu, scene, size)?;
-        let drawn = self.draw_all(name, &renderer, specs)?;
-        let truth = truth::of(scene, size, how)?;
+        let drawn = self.draw_all(order, &renderer)?;
+        let truth = truth::of(scene, size, order.truth)?;
         progress::check_cancelled()?;
         let runs = specs.iter().zip(drawn).map(|(spec, drawn)| Run::new(spec, drawn, &truth));
         let runs = runs.collect::<Result<_, _>>()?;
         renderer.write_visibility(self.gpu, &truth.reference.visibility);
         let data = setup::picture(self.gpu, &renderer)?;
         Ok(Trial {
-            name: name.to_owned(),
+            name: order.name.to_owned(),
             scene: scene.name.clone(),
             triangles: scene.triangle_count(),
             width: size[0],
             height: size[1],
             penumbra: penumbra(&truth),
-            light_samples: how.light_samples,
-            pixel_samples: how.pixel_samples,
+            light_samples: order.truth.light_samples,
+            pixel_samples: order.truth.pixel_samples,
+            frames: order.frames,
             truth_error: truth.reference.rms_error(),
             picture: RgbImage { width: size[0], height: size[1], data },
             runs,
         })
     }
 
-    fn draw_all(&self, name: &str, renderer: &SceneRenderer, specs: &[Spec]) -> Result<Vec<Drawn>, CliError> {
-        let progress = Progress::new(format!("Measuring {name}"));
+    fn draw_all(&self, order: &Order, renderer: &SceneRenderer) -> Result<Vec<Drawn>, CliError> {
+        let progress = Progress::new(format!("Measuring {}", order.name));
         let draw = |(i, spec)| {
-            let show = |done| progress.set((i as f32 + done) / specs.len() as f32);
-            measure::draw(self.gpu, renderer, spec, self.args.gpu.frames, show)
+            let show = |done| progress.set((i as f32 + done) / order.specs.len() as f32);
+            measure::draw(self.gpu, renderer, spec, order.frames, show)
         };
-        specs.iter().enumerate().map(draw).collect()
+        let mut drawn: Vec<Drawn> = order.specs.iter().enumerate().map(draw).collect::<Result<_, _>>()?;
+        one_clock(&mut drawn);
+        Ok(drawn)
+    }
+}
+
+/// Ratios need both sides by the same clock: where one goes by wall time, all do.
+fn one_clock(drawn: &mut [Drawn]) {
+    if drawn.iter().any(|d| d.cost.timing == Timing::Wall) {
+        for Drawn { cost, .. } in drawn {
+            (cost.total_ms, cost.timing) = (cost.wall_ms, Timing::Wall);
+        }
     }
 }
 
@@ -146,11 +170,9 @@ impl Run {
         })
     }
 
-    /// How many times as fast as `base` it is; both sides by the same clock.
+    /// How many times as fast as `base`, a run of the same trial, it is.
     pub fn speed_over(&self, base: &Run) -> f64 {
-        let by_gpu = [self, base].iter().all(|run| run.cost.timing == Timing::Gpu);
-        let ms = |run: &Run| if by_gpu { run.cost.total_ms } else { run.cost.wall_ms };
-        ms(base) / ms(self)
+        base.cost.total_ms / self.cost.total_ms
     }
 
     /// Milliseconds, with a star if they are wall time.

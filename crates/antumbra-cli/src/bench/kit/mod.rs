@@ -11,5 +11,5 @@ mod tests;
 
 pub use files::write;
 pub use findings::{Context, Findings, Group, Part, Ratio, Shown, Table};
-pub use lab::{Lab, Run, Trial};
+pub use lab::{Lab, Order, Run, Trial};
 pub use markdown::terminal;

@@ -3,8 +3,8 @@
 //! All maps look along the light's normal, and each window is shifted so that all of them hold the same receivers: in the
 //! coordinates tangent xy / z and inverse distance 1 / z the map of light point s is the centre's map, sheared by s.
 
-mod draw;
-mod evaluate;
+pub(crate) mod draw;
+pub(crate) mod evaluate;
 
 pub use draw::LightMaps;
 pub(crate) use draw::{MapSlot, MapStage};
@@ -12,9 +12,10 @@ pub use evaluate::Evaluation;
 pub(crate) use evaluate::Entry;
 
 use crate::resource::storage_of;
-use crate::{Frame, Gpu, ShadowFrustum, gpu_struct};
+use crate::{Casters, Frame, Gpu, ShadowFrustum, gpu_struct};
 use antumbra_scene::RectLight;
 use glam::{DMat4, DVec4, Mat4, Vec2};
+use std::sync::{Arc, Weak};
 
 gpu_struct! {
     /// A point of the light and the map that is drawn from it.
@@ -56,6 +57,26 @@ impl LightSamples {
             table.made_for = key;
         }
         table
+    }
+}
+
+/// What maps depend on beside their light points.
+#[derive(Clone)]
+pub struct Drawn {
+    light: RectLight,
+    frustum: ShadowFrustum,
+    casters: Weak<Casters>,
+}
+
+impl Drawn {
+    /// What maps of this frame are drawn for.
+    pub fn of(frame: &Frame) -> Drawn {
+        Drawn { light: frame.light, frustum: frame.frustum, casters: Arc::downgrade(&frame.casters) }
+    }
+
+    /// True if maps drawn for one are maps for the other, as long as no caster has moved.
+    pub fn is(&self, other: &Drawn) -> bool {
+        self.light == other.light && self.frustum == other.frustum && self.casters.ptr_eq(&other.casters)
     }
 }
 

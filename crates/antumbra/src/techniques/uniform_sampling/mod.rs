@@ -5,9 +5,7 @@ mod pattern;
 
 pub use pattern::{Pattern, Sample, Weights, samples};
 
-use crate::passes::light_maps::{
-    Entry, Evaluation, LightMaps, LightSamples, MapSlot, MapStage,
-};
+use crate::passes::light_maps::{Drawn, Entry, Evaluation, LightMaps, LightSamples, MapSlot, MapStage};
 use crate::recorder::Recorder;
 use crate::resource::{UniformArray, storage_bytes, storage_of};
 use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
@@ -53,7 +51,7 @@ pub struct UniformSampling {
     samples: Option<LightSamples>,
     maps: Option<LightMaps>,
     /// What the maps were drawn for, if they still hold it.
-    drawn: Option<(antumbra_scene::RectLight, crate::ShadowFrustum)>,
+    drawn: Option<Drawn>,
 }
 
 /// What depends on the light's size alone, and on how many maps there is room for.
@@ -121,8 +119,9 @@ impl Technique for UniformSampling {
             self.drawn = None;
         }
         let maps = LightMaps::ensure(&mut self.maps, gpu, self.settings.map, plan.part, &frame.casters)?;
-        let scene = (frame.light, frame.frustum);
-        let still_there = frame.casters_rest && plan.part == count && self.drawn == Some(scene);
+        let now = Drawn::of(frame);
+        let are_same = self.drawn.as_ref().is_some_and(|d| d.is(&now));
+        let still_there = frame.casters_rest && plan.part == count && are_same;
         for part in 0..count.div_ceil(plan.part) {
             if !still_there {
                 let first = part * plan.part;
@@ -132,7 +131,7 @@ impl Technique for UniformSampling {
             }
             plan.evaluation.record(recorder, frame, samples, maps, &plan.entries, part);
         }
-        self.drawn = Some(scene);
+        self.drawn = Some(now);
         Ok(())
     }
 

@@ -1,0 +1,176 @@
+//! Shadow maps where the light needs them [Schwärzler 2009]: begin with the corners of the light, split the cells of a
+//! quadtree whose corners see different shadows, weigh what was found. Every decision is made on the GPU, so no frame
+//! waits for a count to come back.
+
+mod rounds;
+mod settings;
+pub(crate) mod state;
+
+pub use settings::{AdaptiveSamplingSettings, Criterion, Space};
+
+use crate::frame::FrameUniform;
+use crate::passes::depth_map::DepthMap;
+use crate::passes::light_maps::{Drawn, Entry, LightMaps, LightSample, LightSamples, MapSlot, MapStage};
+use crate::pipeline::ComputePipeline;
+use crate::recorder::Recorder;
+use crate::shader::ShaderKey;
+use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
+use crate::techniques::uniform_sampling::Evaluate;
+use crate::{Error, Frame, Gpu};
+use rounds::Rounds;
+use state::{AdaptiveUniform, PlanUniform, Shape, State};
+use std::sync::Arc;
+
+/// Texels a side of the map whose surfaces are compared in the light's space.
+const LIGHT_VIEW: u32 = 256;
+
+/// Shadow of a rectangular or linear light by as many shadow maps as its penumbrae need.
+pub struct AdaptiveSampling {
+    settings: AdaptiveSamplingSettings,
+    pipelines: Pipelines,
+    state: Option<State>,
+    samples: Option<LightSamples>,
+    maps: Option<LightMaps>,
+    /// What the light's centre sees, where comparisons are made in its space.
+    light_view: Option<DepthMap>,
+    /// What the maps were drawn for.
+    drawn: Option<Drawn>,
+}
+
+struct Pipelines {
+    plan: Arc<ComputePipeline>,
+    reproject: Arc<ComputePipeline>,
+    compare: Arc<ComputePipeline>,
+    weigh: Arc<ComputePipeline>,
+    accumulate: Arc<ComputePipeline>,
+    finish_sum: Arc<ComputePipeline>,
+}
+
+impl Pipelines {
+    fn new(gpu: &Gpu, settings: &AdaptiveSamplingSettings) -> Result<Pipelines, Error> {
+        let key = |module| {
+            ShaderKey::new(module)
+                .feature("local", settings.criterion == Criterion::Local)
+                .feature("relative", settings.criterion == Criterion::Relative)
+                .feature("of_light", settings.space == Space::Light)
+                .feature("weighted", settings.steady)
+                .with::<FrameUniform>()
+                .with::<AdaptiveUniform>()
+                .with::<PlanUniform>()
+                .with::<LightSample>()
+                .with::<MapSlot>()
+                .with::<MapStage>()
+                .with::<Entry>()
+        };
+        let pipeline = |module, entry| gpu.compute_pipeline(&key(module), entry);
+        Ok(Pipelines {
+            plan: pipeline("techniques::adaptive_sampling::plan", "plan")?,
+            reproject: pipeline("techniques::adaptive_sampling::reproject", "reproject")?,
+            compare: pipeline("techniques::adaptive_sampling::compare", "compare")?,
+            weigh: pipeline("techniques::adaptive_sampling::weigh", "weigh")?,
+            accumulate: pipeline("techniques::adaptive_sampling::accumulate", "accumulate")?,
+            finish_sum: pipeline("techniques::adaptive_sampling::accumulate", "finish_sum")?,
+        })
+    }
+}
+
+impl Describe for AdaptiveSampling {
+    type Settings = AdaptiveSamplingSettings;
+    const ABOUT: About = About {
+        name: "adaptive-sampling",
+        title: "Adaptive light-source sampling",
+        source: "Schwärzler 2009",
+        summary: "shadow maps from as many points of the light as its penumbrae need on the screen",
+    };
+
+    fn make(gpu: &Gpu, settings: AdaptiveSamplingSettings) -> Result<Self, Error> {
+        settings.check()?;
+        Ok(AdaptiveSampling {
+            pipelines: Pipelines::new(gpu, &settings)?,
+            settings,
+            state: None,
+            samples: None,
+            maps: None,
+            light_view: None,
+            drawn: None,
+        })
+    }
+}
+
+impl Technique for AdaptiveSampling {
+    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+        let rest = self.prepare(frame, recorder)?;
+        let rounds = Rounds {
+            frame,
+            pipelines: &self.pipelines,
+            state: self.state.as_ref().expect("prepared"),
+            samples: self.samples.as_ref().expect("prepared"),
+            maps: self.maps.as_ref().expect("prepared"),
+            light_view: self.light_view.as_ref(),
+        };
+        let depth = rounds.state.shape.depth;
+        let accumulates = self.settings.evaluation == Evaluate::Accumulate;
+        for level in 0..=depth {
+            rounds.plan(recorder, level, rest);
+            for chunk in rounds.state.chunks(level, rest) {
+                rounds.draw(recorder, chunk)?;
+                if accumulates {
+                    rounds.accumulate(recorder, chunk);
+                }
+            }
+            if level < depth {
+                rounds.compare(recorder);
+            }
+        }
+        if accumulates {
+            rounds.finish_sum(recorder);
+        } else {
+            rounds.weigh(recorder);
+            rounds.evaluate(recorder);
+        }
+        Ok(())
+    }
+
+    fn memory(&self) -> Vec<Memory> {
+        let maps = self.maps.iter().flat_map(LightMaps::memory);
+        let view = self.light_view.iter().flat_map(DepthMap::memory);
+        maps.chain(view).chain(self.state.iter().flat_map(State::memory)).collect()
+    }
+
+    fn figures<'a>(&'a self, gpu: &'a Gpu) -> FiguresFuture<'a> {
+        Box::pin(async move {
+            match &self.state {
+                Some(state) => state.figures(gpu).await,
+                None => Ok(Vec::new()),
+            }
+        })
+    }
+}
+
+impl AdaptiveSampling {
+    /// Makes what the frame needs, draws what the light's centre sees if comparisons are made there, and tells whether
+    /// the maps of the last frame may still be used.
+    fn prepare(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<bool, Error> {
+        let (gpu, settings) = (recorder.gpu, &self.settings);
+        let shape = Shape::new(frame.light.size, settings.depth);
+        let capacity = State::capacity(gpu, settings, shape);
+        let layers = State::layers(settings, capacity);
+        let same_maps = self.maps.as_ref().is_some_and(|m| m.fits(gpu, settings.map, layers, &frame.casters));
+        let maps = LightMaps::ensure(&mut self.maps, gpu, settings.map, layers, &frame.casters)?;
+        let picture = frame.geometry.size;
+        let same_state =
+            self.state.as_ref().is_some_and(|s| s.shape == shape && s.picture == picture && s.capacity == capacity);
+        if !(same_maps && same_state) {
+            self.state = Some(State::new(gpu, settings, shape, picture, maps)?);
+        }
+        LightSamples::ensure(&mut self.samples, gpu, frame, &shape.places());
+        if settings.space == Space::Light {
+            DepthMap::of_light(&mut self.light_view, recorder, frame, LIGHT_VIEW)?;
+        }
+        let now = Drawn::of(frame);
+        let rest = same_maps && same_state && frame.casters_rest && settings.evaluation == Evaluate::Array;
+        let rest = rest && self.drawn.as_ref().is_some_and(|d| d.is(&now));
+        self.drawn = Some(now);
+        Ok(rest)
+    }
+}

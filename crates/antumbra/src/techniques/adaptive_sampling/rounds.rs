@@ -1,0 +1,116 @@
+//! The rounds of a frame: plan, draw, reproject, compare; then weigh and evaluate.
+
+use super::state::{Chunk, State};
+use super::Pipelines;
+use crate::passes::depth_map::DepthMap;
+use crate::passes::light_maps::{LightMaps, LightSamples};
+use crate::pipeline::{Binding, ComputePipeline};
+use crate::recorder::{Recorder, Work};
+use crate::{Error, Frame, bindings};
+
+/// Bytes in the tree's buffer where the arguments of indirect dispatches lie; see `state.wesl`.
+const REPROJECT_GROUPS: u64 = 0;
+const COMPARE_GROUPS: u64 = 16;
+
+/// All that the passes of a frame read and write.
+pub(super) struct Rounds<'a> {
+    pub frame: &'a Frame,
+    pub pipelines: &'a Pipelines,
+    pub state: &'a State,
+    pub samples: &'a LightSamples,
+    pub maps: &'a LightMaps,
+    /// What the light's centre sees, where comparisons are made in its space.
+    pub light_view: Option<&'a DepthMap>,
+}
+
+impl Rounds<'_> {
+    /// Splits the cells of the level before whose corners disagree, and gives layers to their samples.
+    pub fn plan(&self, recorder: &mut Recorder, level: u32, maps_rest: bool) {
+        let step = self.state.plans.at(level + u32::from(maps_rest) * (self.state.shape.depth + 1));
+        let set = self.tree_bindings(bindings! { plan_step: &step });
+        recorder.compute("refinement", &self.pipelines.plan, &set, Work::Groups([1, 1, 1]));
+    }
+
+    /// Draws the new maps of a chunk and notes what they hold at the points that are compared.
+    pub fn draw(&self, recorder: &mut Recorder, chunk: Chunk) -> Result<(), Error> {
+        let state = self.state;
+        self.maps.record(
+            recorder,
+            &self.frame.casters,
+            self.samples,
+            &state.slots,
+            &state.stages,
+            (chunk.index, chunk.stage),
+        )?;
+        let stage = state.stages.at(chunk.index);
+        let mut more = bindings! {
+            light_samples: &self.samples.buffer,
+            light_maps: &self.maps.texture,
+            map_stage: &stage,
+            values: &state.values,
+        }
+        .to_vec();
+        if let Some(view) = self.light_view {
+            more.extend_from_slice(bindings! { depth_map: &view.texture });
+        }
+        let set = self.frame.bindings(&self.tree_bindings(&more));
+        let work = Work::Indirect(&state.tree, REPROJECT_GROUPS);
+        recorder.compute("reprojection", &self.pipelines.reproject, &set, work);
+        Ok(())
+    }
+
+    /// Measures how much the corners of the new cells disagree.
+    pub fn compare(&self, recorder: &mut Recorder) {
+        let set = self.tree_bindings(bindings! { values: &self.state.values });
+        recorder.compute("comparison", &self.pipelines.compare, &set, Work::Indirect(&self.state.tree, COMPARE_GROUPS));
+    }
+
+    /// Adds what the maps of a chunk see to the visibility.
+    pub fn accumulate(&self, recorder: &mut Recorder, chunk: Chunk) {
+        let stage = self.state.stages.at(chunk.index);
+        let set = self.frame.bindings(&self.tree_bindings(bindings! {
+            light_samples: &self.samples.buffer,
+            light_maps: &self.maps.texture,
+            map_stage: &stage,
+            map_slots: &self.state.slots,
+        }));
+        self.for_each_pixel(recorder, &self.pipelines.accumulate, &set);
+    }
+
+    /// Ends the sum that chunks were added to.
+    pub fn finish_sum(&self, recorder: &mut Recorder) {
+        let set = self.frame.bindings(&self.tree_bindings(&[]));
+        self.for_each_pixel(recorder, &self.pipelines.finish_sum, &set);
+    }
+
+    /// Finds the weights of the finished tree.
+    pub fn weigh(&self, recorder: &mut Recorder) {
+        let set = self.tree_bindings(bindings! { entry_list: &self.state.entries });
+        recorder.compute("refinement", &self.pipelines.weigh, &set, Work::Groups([1, 1, 1]));
+    }
+
+    /// Adds up all maps of the tree.
+    pub fn evaluate(&self, recorder: &mut Recorder) {
+        self.state.evaluation.record(recorder, self.frame, self.samples, self.maps, &self.state.entries, 0);
+    }
+
+    fn for_each_pixel(&self, recorder: &mut Recorder, pipeline: &ComputePipeline, set: &[Binding]) {
+        let [width, height] = self.frame.geometry.size;
+        recorder.compute("visibility sum", pipeline, set, Work::Threads([width, height, 1]));
+    }
+
+    fn tree_bindings<'b>(&'b self, more: &[Binding<'b>]) -> Vec<Binding<'b>> {
+        let s = self.state;
+        let own = bindings! {
+            adaptive: &s.uniform,
+            tree: &s.tree,
+            cells: &s.cells,
+            grid: &s.grid,
+            layer_of: &s.layer_of,
+            slots: &s.slots,
+            active_cells: &s.active_cells,
+            fresh_layers: &s.fresh_layers,
+        };
+        [&own[..], more].concat()
+    }
+}
