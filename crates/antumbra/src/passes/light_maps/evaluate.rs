@@ -7,6 +7,7 @@ use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::UniformArray;
 use crate::shader::ShaderKey;
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
+use glam::Vec2;
 use std::sync::Arc;
 
 gpu_struct! {
@@ -17,6 +18,10 @@ gpu_struct! {
         /// Layer of its map.
         layer: u32,
         weight: f32,
+        /// How far the light that the sample stands for reaches around it along the light's edges: towards smaller and
+        /// towards larger coordinates, metres.
+        reach_low: Vec2,
+        reach_high: Vec2,
     }
 }
 

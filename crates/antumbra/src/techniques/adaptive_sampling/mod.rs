@@ -6,10 +6,10 @@ mod rounds;
 mod settings;
 pub(crate) mod state;
 
-pub use settings::{AdaptiveSamplingSettings, Criterion, Space};
+pub use settings::{AdaptiveSamplingSettings, Criterion, Filter, Space};
 
 use crate::frame::FrameUniform;
-use crate::passes::depth_map::DepthMap;
+use crate::passes::{classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid};
 use crate::passes::light_maps::{Drawn, Entry, LightMaps, LightSample, LightSamples, MapSlot, MapStage};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::Recorder;
@@ -33,8 +33,35 @@ pub struct AdaptiveSampling {
     maps: Option<LightMaps>,
     /// What the light's centre sees, where comparisons are made in its space.
     light_view: Option<DepthMap>,
+    /// The pixels whose visibility is not known at a glance.
+    penumbra: Penumbra,
     /// What the maps were drawn for.
     drawn: Option<Drawn>,
+}
+
+/// Tells lit and dark pixels from the others by one map of the light's centre.
+#[derive(Default)]
+struct Penumbra {
+    map: Option<DepthMap>,
+    pyramid: Option<DepthPyramid>,
+    list: Option<PenumbraList>,
+}
+
+impl Penumbra {
+    fn record(&mut self, recorder: &mut Recorder, frame: &Frame, size: u32) -> Result<&PenumbraList, Error> {
+        let map = DepthMap::of_light(&mut self.map, recorder, frame, size)?;
+        let pyramid = DepthPyramid::ensure(&mut self.pyramid, recorder.gpu, size);
+        let list = PenumbraList::ensure(&mut self.list, recorder.gpu, frame.geometry.size);
+        pyramid.record(recorder, map, frame.frustum.near)?;
+        list.record(recorder, frame, map, pyramid)?;
+        Ok(list)
+    }
+
+    fn memory(&self) -> impl Iterator<Item = Memory> {
+        let map = self.map.iter().flat_map(DepthMap::memory);
+        let pyramid = self.pyramid.iter().map(DepthPyramid::memory);
+        map.chain(pyramid).chain(self.list.iter().map(PenumbraList::memory))
+    }
 }
 
 struct Pipelines {
@@ -44,6 +71,7 @@ struct Pipelines {
     weigh: Arc<ComputePipeline>,
     accumulate: Arc<ComputePipeline>,
     finish_sum: Arc<ComputePipeline>,
+    evaluate_cells: Arc<ComputePipeline>,
 }
 
 impl Pipelines {
@@ -70,6 +98,7 @@ impl Pipelines {
             weigh: pipeline("techniques::adaptive_sampling::weigh", "weigh")?,
             accumulate: pipeline("techniques::adaptive_sampling::accumulate", "accumulate")?,
             finish_sum: pipeline("techniques::adaptive_sampling::accumulate", "finish_sum")?,
+            evaluate_cells: pipeline("techniques::adaptive_sampling::evaluate_cells", "evaluate_cells")?,
         })
     }
 }
@@ -92,6 +121,7 @@ impl Describe for AdaptiveSampling {
             samples: None,
             maps: None,
             light_view: None,
+            penumbra: Penumbra::default(),
             drawn: None,
         })
     }
@@ -126,7 +156,13 @@ impl Technique for AdaptiveSampling {
             rounds.finish_sum(recorder);
         } else {
             rounds.weigh(recorder);
-            rounds.evaluate(recorder);
+            match self.settings.filter {
+                Filter::Pcf => rounds.evaluate(recorder),
+                Filter::Cell => {
+                    let list = self.penumbra.record(recorder, frame, self.settings.map)?;
+                    rounds.evaluate_cells(recorder, list);
+                }
+            }
         }
         Ok(())
     }
@@ -134,7 +170,7 @@ impl Technique for AdaptiveSampling {
     fn memory(&self) -> Vec<Memory> {
         let maps = self.maps.iter().flat_map(LightMaps::memory);
         let view = self.light_view.iter().flat_map(DepthMap::memory);
-        maps.chain(view).chain(self.state.iter().flat_map(State::memory)).collect()
+        maps.chain(view).chain(self.penumbra.memory()).chain(self.state.iter().flat_map(State::memory)).collect()
     }
 
     fn figures<'a>(&'a self, gpu: &'a Gpu) -> FiguresFuture<'a> {
@@ -159,9 +195,11 @@ impl AdaptiveSampling {
         let maps = LightMaps::ensure(&mut self.maps, gpu, settings.map, layers, &frame.casters)?;
         let picture = frame.geometry.size;
         let same_state =
-            self.state.as_ref().is_some_and(|s| s.shape == shape && s.picture == picture && s.capacity == capacity);
+            self.state.as_ref().is_some_and(|s| {
+                (s.shape, s.picture, s.capacity, s.light_size) == (shape, picture, capacity, frame.light.size)
+            });
         if !(same_maps && same_state) {
-            self.state = Some(State::new(gpu, settings, shape, picture, maps)?);
+            self.state = Some(State::new(gpu, settings, shape, (picture, frame.light.size), maps)?);
         }
         LightSamples::ensure(&mut self.samples, gpu, frame, &shape.places());
         if settings.space == Space::Light {

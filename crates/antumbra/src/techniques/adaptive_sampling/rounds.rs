@@ -2,7 +2,7 @@
 
 use super::state::{Chunk, State};
 use super::Pipelines;
-use crate::passes::depth_map::DepthMap;
+use crate::passes::{classify::PenumbraList, depth_map::DepthMap};
 use crate::passes::light_maps::{LightMaps, LightSamples};
 use crate::pipeline::{Binding, ComputePipeline};
 use crate::recorder::{Recorder, Work};
@@ -92,6 +92,17 @@ impl Rounds<'_> {
     /// Adds up all maps of the tree.
     pub fn evaluate(&self, recorder: &mut Recorder) {
         self.state.evaluation.record(recorder, self.frame, self.samples, self.maps, &self.state.entries, 0);
+    }
+
+    /// Adds up what the maps of the tree see of the pixels in penumbra, each for its cell.
+    pub fn evaluate_cells(&self, recorder: &mut Recorder, list: &PenumbraList) {
+        let set = self.frame.bindings(&self.tree_bindings(bindings! {
+            light_samples: &self.samples.buffer,
+            light_maps: &self.maps.texture,
+            entry_list: &self.state.entries,
+            penumbra_pixels: &list.buffer,
+        }));
+        recorder.compute("visibility sum", &self.pipelines.evaluate_cells, &set, Work::Indirect(&list.buffer, 0));
     }
 
     fn for_each_pixel(&self, recorder: &mut Recorder, pipeline: &ComputePipeline, set: &[Binding]) {

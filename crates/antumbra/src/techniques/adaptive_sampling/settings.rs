@@ -16,6 +16,16 @@ crate::choices! {
 }
 
 crate::choices! {
+    /// What a map tells of the light around its sample.
+    pub enum Filter {
+        /// The part of the sample's cell of the light that is seen, by projecting back what the map holds.
+        Cell = "cell",
+        /// Whether the sample is seen, filtered over a few texels [section 3.4.3].
+        Pcf = "pcf",
+    }
+}
+
+crate::choices! {
     /// Where depths are compared.
     pub enum Space {
         /// At the pixels of the picture: what is not seen needs no maps.
@@ -30,7 +40,11 @@ crate::settings! {
     pub struct AdaptiveSamplingSettings {
         /// Shadow maps, texels a side.
         map: u32 = 512, Kind::Integer { min: 16, max: 16384 };
-        /// Width of the filter on each map in texels a side; 1 is a single lookup.
+        /// What a map tells of the light around its sample: its cell (smooth with few maps), or the sample alone (pcf).
+        filter: Filter = Filter::Cell, Kind::Choice { options: Filter::OPTIONS };
+        /// Reads a side for a cell, for filter=cell.
+        taps: u32 = 4, Kind::Integer { min: 1, max: 64 };
+        /// Width of the filter on each map in texels a side, for filter=pcf and for comparisons; 1 is a single lookup.
         pcf: u32 = 2, Kind::Integer { min: 1, max: 33 };
         /// What is compared: visibility where it is most (local), or depth over the picture (absolute, relative).
         criterion: Criterion = Criterion::Local, Kind::Choice { options: Criterion::OPTIONS };

@@ -30,6 +30,10 @@ gpu_struct! {
         /// Texels a side of the filter.
         width: i32,
         by_area: u32,
+        /// Metres.
+        light_size: Vec2,
+        /// Blocks a side that a cell's window is read in, at most about.
+        taps: f32,
     }
 }
 
@@ -46,7 +50,7 @@ gpu_struct! {
 const DEEPEST_RECTANGLE: u32 = 5;
 
 /// Points that are compared on the screen, at most about: the cost of a comparison stays the same whatever the picture.
-const POINTS: f32 = 131_072.0;
+const POINTS: f32 = 32_768.0;
 
 /// Layers that are drawn and added up at a time where memory is to be saved.
 const CHUNK: u32 = 8;
@@ -119,6 +123,7 @@ pub(super) struct State {
     pub shape: Shape,
     pub capacity: u32,
     pub picture: [u32; 2],
+    pub light_size: Vec2,
     pub uniform: wgpu::Buffer,
     pub plans: UniformArray<PlanUniform>,
     pub stages: UniformArray<MapStage>,
@@ -158,12 +163,12 @@ impl State {
         gpu: &Gpu,
         settings: &AdaptiveSamplingSettings,
         shape: Shape,
-        picture: [u32; 2],
+        (picture, light_size): ([u32; 2], Vec2),
         maps: &LightMaps,
     ) -> Result<State, Error> {
         let capacity = State::capacity(gpu, settings, shape);
         let samples = shape.samples_at(shape.depth);
-        let uniform = uniform_of(settings, shape, capacity, picture);
+        let uniform = uniform_of(settings, shape, capacity, picture, light_size);
         let words = |label, count: u32, words: u64| storage_buffer(gpu, label, u64::from(count) * words * 4);
         let plan = |maps_rest: u32| (0..=shape.depth).map(move |level| PlanUniform { level, maps_rest });
         let mut stages = Vec::new();
@@ -171,7 +176,7 @@ impl State {
             (0..=shape.depth).map(|level| push_stages(&mut stages, settings, shape, capacity, maps, level, rest)).collect()
         });
         let empty = vec![MapSlot { sample: u32::MAX, stage: UNUSED }; capacity as usize];
-        let points = uniform.tiles.x * uniform.tiles.y * 64;
+        let points = (uniform.tiles.x * uniform.tiles.y).next_multiple_of(64) * 64;
         let nowhere = vec![u32::MAX; samples as usize];
         Ok(State {
             uniform: crate::resource::uniform(gpu, "adaptive sampling", &uniform),
@@ -180,17 +185,18 @@ impl State {
             chunks,
             tree: words("tree", 1, 12),
             cells: words("tree cells", shape.cells(), 3),
-            grid: words("grid of samples", samples, 3),
+            grid: words("grid of samples", samples, 7),
             layer_of: storage_of(gpu, "layers of samples", &nowhere),
             slots: storage_of(gpu, "map slots", &empty),
             active_cells: words("cells to compare", shape.cells(), 1),
             fresh_layers: words("maps to reproject", samples.max(shape.cells()), 1),
             values: words("reprojected maps", capacity, u64::from(points)),
-            entries: words("sample weights", capacity + 1, 4),
+            entries: words("sample weights", capacity + 1, 8),
             evaluation: Evaluation::new(gpu, settings.pcf, capacity, capacity)?,
             shape,
             capacity,
             picture,
+            light_size,
         })
     }
 
@@ -238,7 +244,13 @@ fn push_stages(
     first..stages.len() as u32
 }
 
-fn uniform_of(settings: &AdaptiveSamplingSettings, shape: Shape, capacity: u32, picture: [u32; 2]) -> AdaptiveUniform {
+fn uniform_of(
+    settings: &AdaptiveSamplingSettings,
+    shape: Shape,
+    capacity: u32,
+    picture: [u32; 2],
+    light_size: Vec2,
+) -> AdaptiveUniform {
     let pixels = picture[0] as f32 * picture[1] as f32;
     let (size, stride) = match settings.space {
         Space::Camera => (picture, (pixels / POINTS).sqrt().ceil().max(1.0) as u32),
@@ -263,6 +275,8 @@ fn uniform_of(settings: &AdaptiveSamplingSettings, shape: Shape, capacity: u32, 
         stride,
         width: settings.pcf as i32,
         by_area: u32::from(settings.weights == Weights::Area),
+        light_size,
+        taps: settings.taps as f32,
     }
 }
 

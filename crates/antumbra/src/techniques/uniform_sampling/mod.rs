@@ -76,10 +76,16 @@ impl Plan {
         let entries: Vec<Entry> = list
             .iter()
             .enumerate()
-            .map(|(i, s)| Entry { sample: i as u32, layer: i as u32 % part, weight: s.weight })
+            .map(|(i, s)| Entry {
+                sample: i as u32,
+                layer: i as u32 % part,
+                weight: s.weight,
+                reach_low: Vec2::ZERO,
+                reach_high: Vec2::ZERO,
+            })
             .collect();
         let slots: Vec<MapSlot> = (0..count).map(|sample| MapSlot { sample, stage: STAGE }).collect();
-        let bytes = [&count.to_le_bytes()[..], &storage_bytes(&entries)].concat();
+        let bytes = [&count.to_le_bytes()[..], &[0; 4], &storage_bytes(&entries)].concat();
         Ok(Plan {
             light_size,
             part,
