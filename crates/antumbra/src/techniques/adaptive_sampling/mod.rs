@@ -68,6 +68,7 @@ struct Pipelines {
     plan: Arc<ComputePipeline>,
     reproject: Arc<ComputePipeline>,
     compare: Arc<ComputePipeline>,
+    steady: Arc<ComputePipeline>,
     weigh: Arc<ComputePipeline>,
     accumulate: Arc<ComputePipeline>,
     finish_sum: Arc<ComputePipeline>,
@@ -95,6 +96,7 @@ impl Pipelines {
             plan: pipeline("techniques::adaptive_sampling::plan", "plan")?,
             reproject: pipeline("techniques::adaptive_sampling::reproject", "reproject")?,
             compare: pipeline("techniques::adaptive_sampling::compare", "compare")?,
+            steady: pipeline("techniques::adaptive_sampling::steady", "steady")?,
             weigh: pipeline("techniques::adaptive_sampling::weigh", "weigh")?,
             accumulate: pipeline("techniques::adaptive_sampling::accumulate", "accumulate")?,
             finish_sum: pipeline("techniques::adaptive_sampling::accumulate", "finish_sum")?,
@@ -129,7 +131,7 @@ impl Describe for AdaptiveSampling {
 
 impl Technique for AdaptiveSampling {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
-        let rest = self.prepare(frame, recorder)?;
+        let Prepared { maps_rest, is_new } = self.prepare(frame, recorder)?;
         let rounds = Rounds {
             frame,
             pipelines: &self.pipelines,
@@ -138,30 +140,25 @@ impl Technique for AdaptiveSampling {
             maps: self.maps.as_ref().expect("prepared"),
             light_view: self.light_view.as_ref(),
         };
-        let depth = rounds.state.shape.depth;
-        let accumulates = self.settings.evaluation == Evaluate::Accumulate;
-        for level in 0..=depth {
-            rounds.plan(recorder, level, rest);
-            for chunk in rounds.state.chunks(level, rest) {
-                rounds.draw(recorder, chunk)?;
-                if accumulates {
-                    rounds.accumulate(recorder, chunk);
-                }
-            }
-            if level < depth {
-                rounds.compare(recorder);
-            }
+        let (steady, accumulates) = (self.settings.steady, self.settings.evaluation == Evaluate::Accumulate);
+        if is_new || !steady {
+            rounds.refine(recorder, maps_rest, accumulates && !steady)?;
+        }
+        if steady {
+            rounds.change(recorder, maps_rest && !is_new, is_new, accumulates)?;
         }
         if accumulates {
             rounds.finish_sum(recorder);
-        } else {
-            rounds.weigh(recorder);
-            match self.settings.filter {
-                Filter::Pcf => rounds.evaluate(recorder),
-                Filter::Cell => {
-                    let list = self.penumbra.record(recorder, frame, self.settings.map)?;
-                    rounds.evaluate_cells(recorder, list);
-                }
+            return Ok(());
+        }
+        if !steady {
+            rounds.weigh(recorder, true);
+        }
+        match self.settings.filter {
+            Filter::Pcf => rounds.evaluate(recorder),
+            Filter::Cell => {
+                let list = self.penumbra.record(recorder, frame, self.settings.map)?;
+                rounds.evaluate_cells(recorder, list);
             }
         }
         Ok(())
@@ -183,10 +180,17 @@ impl Technique for AdaptiveSampling {
     }
 }
 
+/// What is left of the frame before.
+struct Prepared {
+    /// True if its maps may still be used.
+    maps_rest: bool,
+    /// True if there is no tree.
+    is_new: bool,
+}
+
 impl AdaptiveSampling {
-    /// Makes what the frame needs, draws what the light's centre sees if comparisons are made there, and tells whether
-    /// the maps of the last frame may still be used.
-    fn prepare(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<bool, Error> {
+    /// Makes what the frame needs, and draws what the light's centre sees if comparisons are made there.
+    fn prepare(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<Prepared, Error> {
         let (gpu, settings) = (recorder.gpu, &self.settings);
         let shape = Shape::new(frame.light.size, settings.depth);
         let capacity = State::capacity(gpu, settings, shape);
@@ -209,6 +213,6 @@ impl AdaptiveSampling {
         let rest = same_maps && same_state && frame.casters_rest && settings.evaluation == Evaluate::Array;
         let rest = rest && self.drawn.as_ref().is_some_and(|d| d.is(&now));
         self.drawn = Some(now);
-        Ok(rest)
+        Ok(Prepared { maps_rest: rest, is_new: !(same_maps && same_state) })
     }
 }

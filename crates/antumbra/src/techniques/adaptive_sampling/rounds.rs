@@ -24,15 +24,54 @@ pub(super) struct Rounds<'a> {
 }
 
 impl Rounds<'_> {
+    /// Builds the tree from its root, level by level [Schwärzler 2009, section 3.3].
+    pub fn refine(&self, recorder: &mut Recorder, maps_rest: bool, accumulates: bool) -> Result<(), Error> {
+        let depth = self.state.shape.depth;
+        for level in 0..=depth {
+            self.plan(recorder, level, maps_rest);
+            for chunk in self.state.chunks(level, maps_rest) {
+                self.draw(recorder, chunk)?;
+                if accumulates {
+                    self.accumulate(recorder, chunk);
+                }
+            }
+            if level < depth {
+                self.compare(recorder);
+            }
+        }
+        Ok(())
+    }
+
+    /// Changes the tree of the last frame by what that frame has measured, and measures again.
+    pub fn change(
+        &self,
+        recorder: &mut Recorder,
+        maps_rest: bool,
+        jump: bool,
+        accumulates: bool,
+    ) -> Result<(), Error> {
+        self.steady(recorder, maps_rest);
+        self.weigh(recorder, jump);
+        // New maps lie wherever there was room.
+        for chunk in self.state.chunks(0, true) {
+            self.draw(recorder, chunk)?;
+            if accumulates {
+                self.accumulate(recorder, chunk);
+            }
+        }
+        self.compare(recorder);
+        Ok(())
+    }
+
     /// Splits the cells of the level before whose corners disagree, and gives layers to their samples.
-    pub fn plan(&self, recorder: &mut Recorder, level: u32, maps_rest: bool) {
-        let step = self.state.plans.at(level + u32::from(maps_rest) * (self.state.shape.depth + 1));
+    fn plan(&self, recorder: &mut Recorder, level: u32, maps_rest: bool) {
+        let step = self.state.plans.at(State::plan(level, maps_rest, true));
         let set = self.tree_bindings(bindings! { plan_step: &step });
         recorder.compute("refinement", &self.pipelines.plan, &set, Work::Groups([1, 1, 1]));
     }
 
     /// Draws the new maps of a chunk and notes what they hold at the points that are compared.
-    pub fn draw(&self, recorder: &mut Recorder, chunk: Chunk) -> Result<(), Error> {
+    fn draw(&self, recorder: &mut Recorder, chunk: Chunk) -> Result<(), Error> {
         let state = self.state;
         self.maps.record(
             recorder,
@@ -60,13 +99,13 @@ impl Rounds<'_> {
     }
 
     /// Measures how much the corners of the new cells disagree.
-    pub fn compare(&self, recorder: &mut Recorder) {
+    fn compare(&self, recorder: &mut Recorder) {
         let set = self.tree_bindings(bindings! { values: &self.state.values });
         recorder.compute("comparison", &self.pipelines.compare, &set, Work::Indirect(&self.state.tree, COMPARE_GROUPS));
     }
 
     /// Adds what the maps of a chunk see to the visibility.
-    pub fn accumulate(&self, recorder: &mut Recorder, chunk: Chunk) {
+    fn accumulate(&self, recorder: &mut Recorder, chunk: Chunk) {
         let stage = self.state.stages.at(chunk.index);
         let set = self.frame.bindings(&self.tree_bindings(bindings! {
             light_samples: &self.samples.buffer,
@@ -83,9 +122,17 @@ impl Rounds<'_> {
         self.for_each_pixel(recorder, &self.pipelines.finish_sum, &set);
     }
 
-    /// Finds the weights of the finished tree.
-    pub fn weigh(&self, recorder: &mut Recorder) {
-        let set = self.tree_bindings(bindings! { entry_list: &self.state.entries });
+    /// Makes this frame's changes to a tree that is carried over.
+    fn steady(&self, recorder: &mut Recorder, maps_rest: bool) {
+        let step = self.state.plans.at(State::plan(0, maps_rest, false));
+        let set = self.tree_bindings(bindings! { plan_step: &step });
+        recorder.compute("refinement", &self.pipelines.steady, &set, Work::Groups([1, 1, 1]));
+    }
+
+    /// Finds the weights of the tree, and goes there at once or a little of the way.
+    pub fn weigh(&self, recorder: &mut Recorder, jump: bool) {
+        let step = self.state.plans.at(State::plan(0, false, jump));
+        let set = self.tree_bindings(bindings! { entry_list: &self.state.entries, plan_step: &step });
         recorder.compute("refinement", &self.pipelines.weigh, &set, Work::Groups([1, 1, 1]));
     }
 

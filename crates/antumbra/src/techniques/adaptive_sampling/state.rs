@@ -32,6 +32,8 @@ gpu_struct! {
         by_area: u32,
         /// Metres.
         light_size: Vec2,
+        /// Largest change of visibility in a frame that the weights of a steady tree make.
+        pace: f32,
         /// Blocks a side that a cell's window is read in, at most about.
         taps: f32,
     }
@@ -43,6 +45,8 @@ gpu_struct! {
         level: u32,
         /// 1 if maps of the last frame may still be used.
         maps_rest: u32,
+        /// 1 if weights go to their goals at once.
+        jump: u32,
     }
 }
 
@@ -51,6 +55,9 @@ const DEEPEST_RECTANGLE: u32 = 5;
 
 /// Points that are compared on the screen, at most about: the cost of a comparison stays the same whatever the picture.
 const POINTS: f32 = 32_768.0;
+
+/// See `AdaptiveUniform::pace`: too little to be seen as a jump.
+const PACE: f32 = 0.02;
 
 /// Layers that are drawn and added up at a time where memory is to be saved.
 const CHUNK: u32 = 8;
@@ -170,7 +177,9 @@ impl State {
         let samples = shape.samples_at(shape.depth);
         let uniform = uniform_of(settings, shape, capacity, picture, light_size);
         let words = |label, count: u32, words: u64| storage_buffer(gpu, label, u64::from(count) * words * 4);
-        let plan = |maps_rest: u32| (0..=shape.depth).map(move |level| PlanUniform { level, maps_rest });
+        let plans = (0..=shape.depth).flat_map(|level| {
+            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(maps_rest, jump)| PlanUniform { level, maps_rest, jump })
+        });
         let mut stages = Vec::new();
         let chunks = [false, true].map(|rest| {
             (0..=shape.depth).map(|level| push_stages(&mut stages, settings, shape, capacity, maps, level, rest)).collect()
@@ -180,12 +189,12 @@ impl State {
         let nowhere = vec![u32::MAX; samples as usize];
         Ok(State {
             uniform: crate::resource::uniform(gpu, "adaptive sampling", &uniform),
-            plans: UniformArray::new(gpu, "refinement round", &plan(0).chain(plan(1)).collect::<Vec<_>>()),
+            plans: UniformArray::new(gpu, "refinement round", &plans.collect::<Vec<_>>()),
             stages: UniformArray::new(gpu, "map stages", &stages),
             chunks,
             tree: words("tree", 1, 12),
             cells: words("tree cells", shape.cells(), 3),
-            grid: words("grid of samples", samples, 7),
+            grid: words("grid of samples", samples, 12),
             layer_of: storage_of(gpu, "layers of samples", &nowhere),
             slots: storage_of(gpu, "map slots", &empty),
             active_cells: words("cells to compare", shape.cells(), 1),
@@ -198,6 +207,11 @@ impl State {
             picture,
             light_size,
         })
+    }
+
+    /// The place of a round in the list of plans.
+    pub fn plan(level: u32, maps_rest: bool, jump: bool) -> u32 {
+        4 * level + 2 * u32::from(maps_rest) + u32::from(jump)
     }
 
     /// What is drawn in a round.
@@ -276,6 +290,7 @@ fn uniform_of(
         width: settings.pcf as i32,
         by_area: u32::from(settings.weights == Weights::Area),
         light_size,
+        pace: PACE,
         taps: settings.taps as f32,
     }
 }
