@@ -3,8 +3,8 @@
 use crate::cli::TruthArgs;
 use crate::error::CliError;
 use crate::progress::{self, Progress};
-use antumbra_reference::cache::{Cached, trace_cached};
 use antumbra_metrics::{Figures, Image, MetricsError, RgbImage, figures, heat_map};
+use antumbra_reference::cache::{Cached, trace_cached};
 use antumbra_reference::{Reference, Settings, trace};
 use antumbra_scene::Scene;
 use std::path::{Path, PathBuf};

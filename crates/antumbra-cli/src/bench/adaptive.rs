@@ -7,7 +7,7 @@ use crate::error::CliError;
 use crate::report::lines::{Curve, Guide, Lines, Spot};
 use crate::report::text;
 use antumbra::{Error, Spec};
-use antumbra_scene::{RectLight, Scene, builtin};
+use antumbra_scene::{Scene, builtin};
 
 pub const SUITE: Suite = Suite {
     name: "adaptive",
@@ -37,12 +37,14 @@ const FIXED: [u32; 8] = [4, 9, 16, 36, 64, 81, 128, 256];
 const PATTERNS: [&str; 3] = ["regular", "stratified", "low-discrepancy"];
 const COUNTS: [u32; 5] = [4, 16, 64, 256, 1024];
 /// Rays to the light at least, where a thousand samples are measured.
-const FINE: u32 = 4096;
+const FINE: u32 = 16384;
 
 /// A scene and what the paper says of such a one.
 struct Setup {
     /// How much of the picture is penumbra.
     name: &'static str,
+    /// The same in a sentence.
+    place: &'static str,
     builtin: &'static str,
     /// Sets camera and light.
     arrange: fn(&mut Scene),
@@ -53,6 +55,7 @@ struct Setup {
 const SETUPS: [Setup; 4] = [
     Setup {
         name: "small penumbra",
+        place: "with a small penumbra",
         builtin: "windmill",
         arrange: |scene| {
             look(scene, [22.0, 29.0, 38.0], [5.0, 3.5, 0.0], 42.0);
@@ -62,23 +65,27 @@ const SETUPS: [Setup; 4] = [
     },
     Setup {
         name: "medium penumbra",
-        builtin: "plant",
-        arrange: |scene| scene.light.size = [0.08; 2].into(),
+        place: "with a medium one",
+        builtin: "fence",
+        arrange: |scene| scene.light.size = [0.2; 2].into(),
         paper: Some(2.0),
     },
-    Setup { name: "large penumbra", builtin: "layers", arrange: |_| (), paper: None },
+    Setup { name: "large penumbra", place: "with a large one", builtin: "layers", arrange: |_| (), paper: None },
     Setup {
         name: "penumbra everywhere",
+        place: "where it fills the picture",
         builtin: "fence",
         arrange: |scene| {
             look(scene, [0.6, 1.3, 2.3], [-0.8, 0.0, 0.75], 45.0);
-            scene.light = RectLight { size: [4.0; 2].into(), ..scene.light };
+            scene.light.size = [4.0; 2].into();
         },
         paper: Some(0.66),
     },
 ];
 /// The scene of the sweeps.
 const MEDIUM: usize = 1;
+/// The scene of the patterns: an edge in every direction, and nothing that a map is too coarse for.
+const DISK: &str = "disk";
 
 fn look(scene: &mut Scene, eye: [f32; 3], target: [f32; 3], fov_y_deg: f32) {
     scene.camera.eye = eye.into();
@@ -111,8 +118,8 @@ fn run(lab: &Lab) -> Result<Findings, CliError> {
     let scene = &SETUPS[MEDIUM].scene()?;
     let sweep = Order { name: "sweeps", scene, size: part(2), specs: &sweep, frames, truth };
     trials.push(lab.trial(&sweep)?);
-    let patterns = Order { name: "patterns", size: part(4), specs: &patterns, frames: 0, truth: &through_the_middle, ..sweep };
-    trials.push(lab.trial(&patterns)?);
+    let (scene, truth) = (&builtin::build(DISK)?, &through_the_middle);
+    trials.push(lab.trial(&Order { name: "patterns", scene, size: part(4), specs: &patterns, frames: 0, truth })?);
     Ok(findings(trials))
 }
 
@@ -138,7 +145,7 @@ fn by_number(pcf: u32) -> Vec<String> {
 
 fn by_count(pattern: &str) -> Vec<String> {
     // A thousand maps are added up one by one: together they would not fit every adapter.
-    COUNTS.map(|n| format!("uniform-sampling:map=1024,samples={n},pattern={pattern},evaluation=accumulate")).to_vec()
+    COUNTS.map(|n| format!("uniform-sampling:map=512,samples={n},pattern={pattern},evaluation=accumulate")).to_vec()
 }
 
 fn sweep() -> Vec<String> {
@@ -183,9 +190,9 @@ fn lead(scenes: &[Trial]) -> String {
         let (own, base) = (trial.run(ROWS[0])?, trial.run(BASE)?);
         let paper = setup.paper.map_or(String::new(), |p| format!(" (paper: {p})"));
         let (maps, speed) = (own.count("maps"), times(own.speed_over(base)));
-        Some(format!("{}: {maps} maps, {speed} times as fast{paper}", trial.name))
+        Some(format!("{maps} maps {}, {speed} times as fast{paper}", setup.place))
     });
-    format!("Adaptive sampling at its defaults, against 128 fixed samples. {}.", said.collect::<Vec<_>>().join("; "))
+    format!("Adaptive sampling at its defaults, beside 128 fixed samples: {}.", said.collect::<Vec<_>>().join("; "))
 }
 
 /// A ratio, two significant digits.
@@ -301,10 +308,11 @@ fn patterns_part(trial: &Trial) -> Part {
     Part {
         title: "Patterns of points".into(),
         text: format!(
-            "uniform-sampling with maps of 1024 x 1024, {} of the medium penumbra. The truth goes through the middle \
-             of each pixel with {} rays to the light, as the technique does, so that what is left is the error of the \
-             light's samples and of the maps. Points at random would follow n^-1/2, a pattern that keeps its distances \
-             n^-3/4.",
+            "uniform-sampling in {}, {}: a round umbra, so that its edge meets the light's samples in every direction. \
+             The truth goes through the middle of each pixel, as the technique does, with {} rays to the light: what \
+             is left is the error of the light's samples. Points at random would follow n^-1/2, points that keep their \
+             distances n^-3/4.",
+            trial.scene,
             pixels(Some(trial)),
             text::count(trial.light_samples.into())
         ),
@@ -315,5 +323,25 @@ fn patterns_part(trial: &Trial) -> Part {
             curves: PATTERNS.into_iter().enumerate().map(curve).collect(),
             guides: vec![guide("n^-1/2", -0.5), guide("n^-3/4", -0.75)],
         })],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_spec_and_every_scene_is_known() {
+        let texts = [rows(), sweep(), patterns()].concat();
+        assert_eq!(specs(texts).unwrap().len(), ROWS.len() + 4 * (5 + 6 + 8) + 3 * 5);
+        for setup in &SETUPS {
+            let triangles = setup.scene().unwrap().triangle_count();
+            assert!((1000..20_000).contains(&triangles), "{}: {triangles}", setup.name);
+        }
+    }
+
+    #[test]
+    fn ratios_have_two_digits() {
+        assert_eq!([0.656, 0.999, 1.0, 5.52, 9.96, 17.3].map(times), ["0.66", "1.0", "1.0", "5.5", "10", "17"]);
     }
 }

@@ -11,7 +11,7 @@ pub const RIGHT: f64 = WIDTH - 28.0;
 pub const TOP: f64 = 20.0;
 pub const BOTTOM: f64 = HEIGHT - 56.0;
 /// A logarithm has no zero: what costs or errs nothing is drawn at this.
-pub const FLOOR: f64 = 1e-5;
+const FLOOR: f64 = 1e-5;
 
 /// A logarithmic axis from `low` to `high`, drawn from `start` to `end`.
 pub struct Axis {
@@ -42,9 +42,13 @@ impl Axis {
         Self { low: low / margin, high: high * margin, start, end }
     }
 
-    /// Where a value stands.
+    /// Where a value stands; zero stands at the floor.
     pub fn place(&self, value: f64) -> f64 {
-        self.start + (value.max(FLOOR) / self.low).ln() / (self.high / self.low).ln() * (self.end - self.start)
+        self.at(value.max(FLOOR))
+    }
+
+    fn at(&self, value: f64) -> f64 {
+        self.start + (value / self.low).ln() / (self.high / self.low).ln() * (self.end - self.start)
     }
 
     /// Whether a value is on the axis.
@@ -79,12 +83,12 @@ pub fn grid(x: &Axis, y: &Axis, titles: &Titles) -> Markup {
     let label = |v: f64| format!("{}", (v * 1e9).round() / 1e9);
     html! {
         @for tick in x.ticks() {
-            @let at = format!("{:.1}", x.place(tick));
+            @let at = format!("{:.1}", x.at(tick));
             line.grid x1=(at) x2=(at) y1=(TOP) y2=(BOTTOM) {}
             text.tick x=(at) y=(BOTTOM + 20.0) text-anchor="middle" { (label(tick)) }
         }
         @for tick in y.ticks() {
-            @let at = y.place(tick);
+            @let at = y.at(tick);
             line.grid x1=(LEFT) x2=(RIGHT) y1=(format!("{at:.1}")) y2=(format!("{at:.1}")) {}
             text.tick x=(LEFT - 10.0) y=(format!("{:.1}", at + 4.0)) text-anchor="end" { (label(tick)) }
         }

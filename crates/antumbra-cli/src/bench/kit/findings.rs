@@ -89,6 +89,16 @@ pub struct Context {
     pub frames: u32,
 }
 
+impl Context {
+    /// What a time is made of.
+    pub fn counted(&self) -> String {
+        match self.frames {
+            1 => "one frame".to_owned(),
+            n => format!("median of {n} frames"),
+        }
+    }
+}
+
 impl Findings {
     /// Which clock the milliseconds were read from.
     pub fn clock(&self) -> &'static str {

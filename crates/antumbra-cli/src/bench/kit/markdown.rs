@@ -5,14 +5,14 @@ use crate::table;
 
 /// Everything but the plots.
 pub fn document(context: &Context, findings: &Findings) -> String {
-    let Context { suite, title, source, adapter, command, frames, .. } = context;
+    let Context { suite, title, source, adapter, command, .. } = context;
     let software = if context.software { ", a software adapter: its milliseconds say nothing about a GPU" } else { "" };
     let mut text = format!(
-        "## {title} [{source}]\n\nMeasured on {}{software}. Milliseconds: {}, median of {frames} {}. Made by\n\n    \
+        "## {title} [{source}]\n\nMeasured on {}{software}. Milliseconds: {}, {}. Made by\n\n    \
          {command}\n\n{}\n",
         escaped(adapter),
         findings.clock(),
-        if *frames == 1 { "frame" } else { "frames" },
+        context.counted(),
         findings.lead
     );
     for part in &findings.parts {
@@ -25,7 +25,9 @@ pub fn document(context: &Context, findings: &Findings) -> String {
             text += &format!("\n### {}\n\n{}\n\n{}", part.title, part.text, tables.join("\n"));
         }
     }
-    text + &format!("\nPlots and pictures are in `{suite}.html`, every measurement in `{suite}.csv` and `{suite}.json`.\n")
+    text + &format!(
+        "\nPlots and pictures are in `{suite}.html`, every measurement in `{suite}.csv` and `{suite}.json`.\n"
+    )
 }
 
 fn markdown(table: &Table) -> String {

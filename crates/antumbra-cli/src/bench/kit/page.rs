@@ -49,7 +49,7 @@ fn header(context: &Context, findings: &Findings) -> Markup {
             div { dt { "Paper" } dd { (context.source) } }
             (frame::adapter(&context.adapter, context.software))
             div { dt { "Milliseconds" } dd { (findings.clock()) } }
-            div { dt { "Frames" } dd { "median of " (context.frames) } }
+            div { dt { "Frames" } dd { (context.counted()) } }
         }
         (frame::command(&context.command))
         @if context.software { (frame::software_notice()) }

@@ -123,7 +123,9 @@ fn csv_has_a_row_a_run_and_a_column_a_figure_of_work() {
 #[test]
 fn markdown_is_a_table_that_names_the_adapter_the_clock_and_the_command() {
     let md = text(&written(&findings()), "made-up.md");
-    for line in ["| technique | maps | ms |", "|---|--:|--:|", "| **a\\_scene** |  |  |", "| `pcf:map=512` | 7 | 4.00 |"] {
+    for line in
+        ["| technique | maps | ms |", "|---|--:|--:|", "| **a\\_scene** |  |  |", "| `pcf:map=512` | 7 | 4.00 |"]
+    {
         assert!(md.contains(line), "{line} in {md}");
     }
     for part in ["llvmpipe (LLVM 15) \\| \\*, a software adapter", "GPU timestamps", "    antumbra bench made-up"] {
