@@ -328,6 +328,7 @@ fn patterns_part(trial: &Trial) -> Part {
 
 #[cfg(test)]
 mod tests {
+    use super::super::kit::tests::{run, trial};
     use super::*;
 
     #[test]
@@ -338,6 +339,34 @@ mod tests {
             let triangles = setup.scene().unwrap().triangle_count();
             assert!((1000..20_000).contains(&triangles), "{}: {triangles}", setup.name);
         }
+    }
+
+    #[test]
+    fn the_paper_stands_beside_ours() {
+        let runs = || ROWS.iter().zip([10.0, 5.0, 40.0, 60.0, 120.0]).map(|(spec, ms)| run(spec, ms, &[("maps", 7.0)]));
+        let findings = findings(SETUPS.iter().map(|setup| trial(setup.name, runs().collect())).collect());
+        let ratios: Vec<_> = findings.ratios.iter().map(|r| (r.paper, r.ours)).collect();
+        assert_eq!(
+            (ratios.len(), ratios[0], ratios[1], ratios[4]),
+            (8, (Some(5.5), 6.0), (Some(5.5), 12.0), (None, 6.0))
+        );
+        let said = "7 maps with a small penumbra, 6.0 times as fast (paper: 5.5)";
+        assert!(findings.lead.contains(said), "{}", findings.lead);
+        let [Shown::Pictures(_), Shown::Table(table)] = &findings.parts[0].shown[..] else { panic!("a table") };
+        assert_eq!(table.groups.len(), 4);
+        assert!(table.groups.iter().flat_map(|g| &g.rows).all(|row| row.len() == HEADS.len()));
+        assert_eq!(table.groups[0].rows[0][6..8], ["6.0", "5.5"]);
+        assert_eq!(table.groups[0].rows[3][6..8], ["1.0", "–"]);
+    }
+
+    #[test]
+    fn sweeps_become_a_curve_for_each_width_of_the_filter() {
+        let runs = sweep().iter().enumerate().map(|(i, spec)| run(spec, 1.0 + i as f64, &[])).collect();
+        let part = sweep_part(&trial("sweeps", runs), "Epsilon", "relative", by_epsilon);
+        assert!(part.text.contains("epsilon = 0.1, 0.03, 0.01, 0.003, 0.001"), "{}", part.text);
+        let [Shown::Lines(lines)] = &part.shown[..] else { panic!("a plot") };
+        let points: Vec<_> = lines.curves.iter().map(|c| c.points.len()).collect();
+        assert_eq!(points, [5, 5, 5, 5, 8, 8, 8, 8]);
     }
 
     #[test]

@@ -37,7 +37,7 @@ fn adapters_have_names() {
 fn help_and_version_are_there() {
     let place = Place::new();
     assert!(place.succeeds("--version").stdout.starts_with("antumbra "));
-    for command in ["render", "reference", "compare", "techniques", "scenes", "adapters"] {
+    for command in ["render", "reference", "compare", "bench", "techniques", "scenes", "adapters"] {
         assert!(place.succeeds("--help").stdout.contains(command));
         assert!(place.succeeds(&format!("{command} --help")).stdout.contains("Usage: antumbra"));
     }

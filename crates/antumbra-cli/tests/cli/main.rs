@@ -1,6 +1,7 @@
 //! The program from the outside: what it writes, what it says, how it ends.
 
 mod bad_input;
+mod bench;
 mod compare;
 mod files;
 mod lists;

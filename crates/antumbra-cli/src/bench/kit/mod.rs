@@ -7,7 +7,7 @@ mod markdown;
 mod page;
 
 #[cfg(test)]
-mod tests;
+pub mod tests;
 
 pub use files::write;
 pub use findings::{Context, Findings, Group, Part, Ratio, Shown, Table};

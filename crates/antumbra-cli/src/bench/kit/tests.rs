@@ -1,12 +1,16 @@
-//! The files of a suite, with made-up numbers.
+//! The files of a suite, with made-up numbers, and a trial, with true ones.
 
 use super::*;
+use crate::cli::{BenchArgs, Cli, Command};
 use crate::measure::{Cost, Timing};
 use crate::report::Lines;
 use crate::report::lines::{Curve, Spot};
 use antumbra_metrics::{Image, RgbImage, figures};
+use antumbra_scene::Scene;
+use clap::Parser;
 use std::fs;
 
+/// A run that took this long; its techniques and figures do not matter.
 pub fn run(spec: &str, ms: f64, work: &[(&'static str, f64)]) -> Run {
     let (test, truth) = ([0.5, 0.25, 1.0, 0.0], [0.5, 0.5, 1.0, 0.0]);
     let image = |values| Image::new(2, 2, values).unwrap();
@@ -20,6 +24,7 @@ pub fn run(spec: &str, ms: f64, work: &[(&'static str, f64)]) -> Run {
     }
 }
 
+/// A trial of these runs.
 pub fn trial(name: &str, runs: Vec<Run>) -> Trial {
     Trial {
         name: name.into(),
@@ -148,4 +153,33 @@ fn the_terminal_has_titles_between_aligned_rows() {
     let text = terminal(&findings());
     let lines: Vec<&str> = text.lines().skip(2).collect();
     assert_eq!(lines, ["technique    maps    ms", "a_scene", "pcf:map=512     7  4.00", "pcf             –  8.00", ""]);
+}
+
+fn arguments() -> BenchArgs {
+    let words = "antumbra bench -o x --frames 1 --light-samples 64 --pixel-samples 1 --no-cache";
+    match Cli::parse_from(words.split(' ')).command {
+        Command::Bench(args) => args,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_trial_measures_each_technique_and_the_penumbra() {
+    let args = arguments();
+    let gpu = crate::setup::gpu(&args.gpu, [1, 1]).unwrap();
+    let lab = Lab { args: &args, gpu: &gpu };
+    let specs = ["hard:map=64", "pcss:map=256"].map(|text| text.parse().unwrap());
+    let measured = |scene: &Scene| {
+        let truth = &args.truth;
+        lab.trial(&Order { name: "a", scene, size: [48, 32], specs: &specs, frames: 1, truth }).unwrap()
+    };
+    let mut scene = antumbra_scene::builtin::build("square").unwrap();
+    let soft = measured(&scene);
+    assert_eq!(soft.runs.iter().map(|run| run.spec.as_str()).collect::<Vec<_>>(), ["hard:map=64", "pcss:map=256"]);
+    assert!(soft.runs[1].figures.average_error < soft.runs[0].figures.average_error);
+    assert!(soft.runs.iter().all(|run| run.cost.total_ms > 0.0 && run.cost.total_bytes > 0));
+    assert_eq!(soft.runs[0].cost.timing, soft.runs[1].cost.timing, "both sides of a ratio by one clock");
+    scene.light.size = [0.0; 2].into();
+    let sharp = measured(&scene);
+    assert!(soft.penumbra > 0.05 && sharp.penumbra == 0.0, "{} {}", soft.penumbra, sharp.penumbra);
 }
