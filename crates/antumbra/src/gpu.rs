@@ -39,17 +39,17 @@ pub struct Capabilities {
 }
 
 impl Capabilities {
-    fn of(features: wgpu::Features, limits: &wgpu::Limits) -> Self {
+    fn of(features: wgpu::Features, limits: &wgpu::Limits, info: &wgpu::AdapterInfo) -> Self {
+        let layered = features.contains(wgpu::Features::MULTIVIEW) && !info.driver.contains("llvmpipe");
         Capabilities {
             timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
             float32_filtering: features.contains(wgpu::Features::FLOAT32_FILTERABLE),
             float32_blending: features.contains(wgpu::Features::FLOAT32_BLENDABLE),
             conservative_rasterization: features.contains(wgpu::Features::CONSERVATIVE_RASTERIZATION),
             subgroups: features.contains(wgpu::Features::SUBGROUP),
-            layers_per_pass: match features.contains(wgpu::Features::MULTIVIEW) {
-                true => limits.max_multiview_view_count.clamp(1, 32),
-                false => 1,
-            },
+            // llvmpipe (seen in Mesa 22.3) has the layers, but a triangle that covers a whole tile of its rasteriser is
+            // drawn into one of them only.
+            layers_per_pass: if layered { limits.max_multiview_view_count.clamp(1, 32) } else { 1 },
             max_texture_size: limits.max_texture_dimension_2d,
         }
     }
@@ -155,8 +155,9 @@ impl Gpu {
 
     /// Takes the host's device. Features that it was not made with are replaced by their fallbacks.
     pub fn from_host(device: wgpu::Device, queue: wgpu::Queue) -> Gpu {
-        let capabilities = Capabilities::of(device.features(), &device.limits());
-        Gpu { info: device.adapter_info(), capabilities, pipelines: Arc::default(), device, queue }
+        let info = device.adapter_info();
+        let capabilities = Capabilities::of(device.features(), &device.limits(), &info);
+        Gpu { info, capabilities, pipelines: Arc::default(), device, queue }
     }
 
     /// True if the adapter computes on the CPU: its absolute times say nothing about a GPU.

@@ -128,9 +128,10 @@ impl LightMaps {
     /// in no more than half a gigabyte.
     pub fn most(gpu: &Gpu, size: u32) -> u32 {
         let by_memory = (MOST_BYTES / (4 * u64::from(size) * u64::from(size))).min(u64::from(u32::MAX)) as u32;
-        // A group may be filled up with layers that nobody uses.
-        let layers = gpu.device.limits().max_texture_array_layers - gpu.capabilities.layers_per_pass + 1;
-        layers.min(by_memory).max(1)
+        let layers = gpu.device.limits().max_texture_array_layers.min(by_memory);
+        // Whole groups of layers, or a single map.
+        let group = gpu.capabilities.layers_per_pass;
+        if layers < group { layers.max(1) } else { layers / group * group }
     }
 
     /// The stage of a drawing round over these layers, for [`LightMaps::record`].
@@ -186,7 +187,7 @@ impl LightMaps {
             recorder.layered_depth_pass("light maps", view, self.layers_per_group, |gpu, pass| {
                 pass.set_pipeline(&wipe.pipeline);
                 pass.set_bind_group(0, &wipe.bind_group(gpu, 0, &set), &[]);
-                pass.draw(0..3, group..group + 1);
+                pass.draw(0..3, 0..1);
                 for (i, batch) in casters.batches.iter().enumerate() {
                     let pipeline = if batch.masked { &masked } else { &opaque };
                     pass.set_pipeline(&pipeline.pipeline);

@@ -82,7 +82,8 @@ impl Pipelines {
                 .feature("local", settings.criterion == Criterion::Local)
                 .feature("relative", settings.criterion == Criterion::Relative)
                 .feature("of_light", settings.space == Space::Light)
-                .feature("weighted", settings.steady)
+                .feature("weighted", settings.knows_weights())
+                .feature("chunked", settings.evaluation == Evaluate::Accumulate)
                 .with::<FrameUniform>()
                 .with::<AdaptiveUniform>()
                 .with::<PlanUniform>()
@@ -141,13 +142,17 @@ impl Technique for AdaptiveSampling {
             light_view: self.light_view.as_ref(),
         };
         let (steady, accumulates) = (self.settings.steady, self.settings.evaluation == Evaluate::Accumulate);
+        let weighted = self.settings.knows_weights();
         if is_new || !steady {
-            rounds.refine(recorder, maps_rest, accumulates && !steady)?;
+            rounds.refine(recorder, maps_rest, accumulates && !weighted)?;
         }
         if steady {
             rounds.change(recorder, maps_rest && !is_new, is_new, accumulates)?;
         }
         if accumulates {
+            if weighted && !steady {
+                rounds.accumulate_again(recorder)?;
+            }
             rounds.finish_sum(recorder);
             return Ok(());
         }
@@ -194,7 +199,7 @@ impl AdaptiveSampling {
         let (gpu, settings) = (recorder.gpu, &self.settings);
         let shape = Shape::new(frame.light.size, settings.depth);
         let capacity = State::capacity(gpu, settings, shape);
-        let layers = State::layers(settings, capacity);
+        let layers = State::layers(gpu, settings, capacity);
         let same_maps = self.maps.as_ref().is_some_and(|m| m.fits(gpu, settings.map, layers, &frame.casters));
         let maps = LightMaps::ensure(&mut self.maps, gpu, settings.map, layers, &frame.casters)?;
         let picture = frame.geometry.size;

@@ -42,6 +42,16 @@ impl Rounds<'_> {
         Ok(())
     }
 
+    /// Draws all maps of the finished tree again, chunk by chunk, and adds them up by their weights.
+    pub fn accumulate_again(&self, recorder: &mut Recorder) -> Result<(), Error> {
+        self.weigh(recorder, true);
+        for chunk in (0..=self.state.shape.depth).flat_map(|level| self.state.chunks(level, false)) {
+            self.draw_maps(recorder, chunk)?;
+            self.accumulate(recorder, chunk);
+        }
+        Ok(())
+    }
+
     /// Changes the tree of the last frame by what that frame has measured, and measures again.
     pub fn change(
         &self,
@@ -72,20 +82,14 @@ impl Rounds<'_> {
 
     /// Draws the new maps of a chunk and notes what they hold at the points that are compared.
     fn draw(&self, recorder: &mut Recorder, chunk: Chunk) -> Result<(), Error> {
+        self.draw_maps(recorder, chunk)?;
         let state = self.state;
-        self.maps.record(
-            recorder,
-            &self.frame.casters,
-            self.samples,
-            &state.slots,
-            &state.stages,
-            (chunk.index, chunk.stage),
-        )?;
         let stage = state.stages.at(chunk.index);
         let mut more = bindings! {
             light_samples: &self.samples.buffer,
             light_maps: &self.maps.texture,
             map_stage: &stage,
+            map_slots: &state.slots,
             values: &state.values,
         }
         .to_vec();
@@ -93,9 +97,18 @@ impl Rounds<'_> {
             more.extend_from_slice(bindings! { depth_map: &view.texture });
         }
         let set = self.frame.bindings(&self.tree_bindings(&more));
-        let work = Work::Indirect(&state.tree, REPROJECT_GROUPS);
+        let work = match state.is_chunked {
+            true => Work::Groups([state.tiles, chunk.stage.group_count * chunk.stage.layers, 1]),
+            false => Work::Indirect(&state.tree, REPROJECT_GROUPS),
+        };
         recorder.compute("reprojection", &self.pipelines.reproject, &set, work);
         Ok(())
+    }
+
+    fn draw_maps(&self, recorder: &mut Recorder, chunk: Chunk) -> Result<(), Error> {
+        let (slots, stages) = (&self.state.slots, &self.state.stages);
+        let stage = (chunk.index, chunk.stage);
+        self.maps.record(recorder, &self.frame.casters, self.samples, slots, stages, stage)
     }
 
     /// Measures how much the corners of the new cells disagree.

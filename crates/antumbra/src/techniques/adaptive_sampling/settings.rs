@@ -62,7 +62,7 @@ crate::settings! {
         space: Space = Space::Camera, Kind::Choice { options: Space::OPTIONS };
         /// What samples count: the area around them, or less the finer they were refined (eq. 5 and 6).
         weights: Weights = Weights::Area, Kind::Choice { options: Weights::OPTIONS };
-        /// All maps in one array, or each through the same texture, all counting the same, as section 4.1 has it.
+        /// All maps in one array, or few at a time: drawn twice, or once with equal weights (weights=paper, section 4.1).
         evaluation: Evaluate = Evaluate::Array, Kind::Choice { options: Evaluate::OPTIONS };
         /// For animation: the tree is carried over from frame to frame and changes little by little.
         steady: bool = false, Kind::Toggle;
@@ -70,6 +70,12 @@ crate::settings! {
 }
 
 impl AdaptiveSamplingSettings {
+    /// True if the weights are known when maps are added up one by one: those of a steady tree are, and those of a tree
+    /// whose maps are drawn once to build it and once more to add them up. The paper draws once and weighs all the same.
+    pub(super) fn knows_weights(&self) -> bool {
+        self.steady || self.weights == Weights::Area
+    }
+
     /// Refuses what makes no sense together.
     pub(super) fn check(&self) -> Result<(), SpecError> {
         if self.space == Space::Light && self.criterion == Criterion::Local {

@@ -129,6 +129,10 @@ pub(super) struct Chunk {
 pub(super) struct State {
     pub shape: Shape,
     pub capacity: u32,
+    /// True if only a chunk of the maps is in memory at a time.
+    pub is_chunked: bool,
+    /// Tiles that are compared.
+    pub tiles: u32,
     pub picture: [u32; 2],
     pub light_size: Vec2,
     pub uniform: wgpu::Buffer,
@@ -159,10 +163,11 @@ impl State {
     }
 
     /// Number of maps in memory.
-    pub fn layers(settings: &AdaptiveSamplingSettings, capacity: u32) -> u32 {
+    pub fn layers(gpu: &Gpu, settings: &AdaptiveSamplingSettings, capacity: u32) -> u32 {
         match settings.evaluation {
             Evaluate::Array => capacity,
-            Evaluate::Accumulate => capacity.min(CHUNK),
+            // Whole groups of layers, so that chunks do not overlap.
+            Evaluate::Accumulate => capacity.min(CHUNK.next_multiple_of(gpu.capabilities.layers_per_pass)),
         }
     }
 
@@ -176,13 +181,14 @@ impl State {
         let capacity = State::capacity(gpu, settings, shape);
         let samples = shape.samples_at(shape.depth);
         let uniform = uniform_of(settings, shape, capacity, picture, light_size);
+        let layers = State::layers(gpu, settings, capacity);
         let words = |label, count: u32, words: u64| storage_buffer(gpu, label, u64::from(count) * words * 4);
         let plans = (0..=shape.depth).flat_map(|level| {
             [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(maps_rest, jump)| PlanUniform { level, maps_rest, jump })
         });
         let mut stages = Vec::new();
         let chunks = [false, true].map(|rest| {
-            (0..=shape.depth).map(|level| push_stages(&mut stages, settings, shape, capacity, maps, level, rest)).collect()
+            (0..=shape.depth).map(|level| push_stages(&mut stages, maps, layers, if rest { 0..capacity } else { shape.layers_of(level, capacity) }, level)).collect()
         });
         let empty = vec![MapSlot { sample: u32::MAX, stage: UNUSED }; capacity as usize];
         let points = (uniform.tiles.x * uniform.tiles.y).next_multiple_of(64) * 64;
@@ -204,6 +210,8 @@ impl State {
             evaluation: Evaluation::new(gpu, settings.pcf, capacity, capacity)?,
             shape,
             capacity,
+            is_chunked: settings.evaluation == Evaluate::Accumulate,
+            tiles: uniform.tiles.x * uniform.tiles.y,
             picture,
             light_size,
         })
@@ -235,26 +243,20 @@ impl State {
     }
 }
 
-/// Appends the stages of a level and tells where they are.
+/// Appends the stages that draw a run of slots, `layers` at a time, and tells where they are in the list.
 fn push_stages(
     stages: &mut Vec<MapStage>,
-    settings: &AdaptiveSamplingSettings,
-    shape: Shape,
-    capacity: u32,
     maps: &LightMaps,
+    layers: u32,
+    slots: Range<u32>,
     level: u32,
-    rest: bool,
 ) -> Range<u32> {
     let first = stages.len() as u32;
-    // With maps at rest, a new one goes wherever there is room.
-    let layers = if rest { 0..capacity } else { shape.layers_of(level, capacity) };
-    if settings.evaluation == Evaluate::Array {
-        stages.push(maps.stage(level, 0, layers));
-    } else {
-        let chunk = State::layers(settings, capacity);
-        let chunks = layers.start / chunk..layers.end.div_ceil(chunk);
-        stages.extend(chunks.map(|c| maps.stage(level, c * chunk, 0..chunk)));
-    }
+    let chunks = slots.start / layers..slots.end.div_ceil(layers);
+    stages.extend(chunks.map(|chunk| {
+        let base = chunk * layers;
+        maps.stage(level, base, slots.start.saturating_sub(base)..(slots.end - base).min(layers))
+    }));
     first..stages.len() as u32
 }
 
