@@ -17,7 +17,7 @@ use crate::shader::ShaderKey;
 use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
 use crate::techniques::uniform_sampling::Evaluate;
 use crate::{Error, Frame, Gpu};
-use rounds::Rounds;
+use rounds::{Rounds, Sum};
 use state::{AdaptiveUniform, PlanUniform, Shape, State};
 use std::sync::Arc;
 
@@ -71,6 +71,8 @@ struct Pipelines {
     steady: Arc<ComputePipeline>,
     weigh: Arc<ComputePipeline>,
     accumulate: Arc<ComputePipeline>,
+    /// None if single samples are added up.
+    accumulate_cells: Option<Arc<ComputePipeline>>,
     finish_sum: Arc<ComputePipeline>,
     evaluate_cells: Arc<ComputePipeline>,
 }
@@ -83,6 +85,7 @@ impl Pipelines {
                 .feature("relative", settings.criterion == Criterion::Relative)
                 .feature("of_light", settings.space == Space::Light)
                 .feature("weighted", settings.knows_weights())
+                .feature("cell", settings.filter == Filter::Cell)
                 .feature("chunked", settings.evaluation == Evaluate::Accumulate)
                 .with::<FrameUniform>()
                 .with::<AdaptiveUniform>()
@@ -100,6 +103,10 @@ impl Pipelines {
             steady: pipeline("techniques::adaptive_sampling::steady", "steady")?,
             weigh: pipeline("techniques::adaptive_sampling::weigh", "weigh")?,
             accumulate: pipeline("techniques::adaptive_sampling::accumulate", "accumulate")?,
+            accumulate_cells: match settings.filter == Filter::Cell && settings.knows_weights() {
+                true => Some(pipeline("techniques::adaptive_sampling::accumulate", "accumulate_cells")?),
+                false => None,
+            },
             finish_sum: pipeline("techniques::adaptive_sampling::accumulate", "finish_sum")?,
             evaluate_cells: pipeline("techniques::adaptive_sampling::evaluate_cells", "evaluate_cells")?,
         })
@@ -141,30 +148,29 @@ impl Technique for AdaptiveSampling {
             maps: self.maps.as_ref().expect("prepared"),
             light_view: self.light_view.as_ref(),
         };
-        let (steady, accumulates) = (self.settings.steady, self.settings.evaluation == Evaluate::Accumulate);
-        let weighted = self.settings.knows_weights();
+        let (steady, weighted) = (self.settings.steady, self.settings.knows_weights());
+        let list = match self.settings.filter {
+            Filter::Cell => Some(self.penumbra.record(recorder, frame, self.settings.map)?),
+            Filter::Pcf => None,
+        };
+        let at_once = (self.settings.evaluation == Evaluate::Accumulate).then_some(Sum { list });
         if is_new || !steady {
-            rounds.refine(recorder, maps_rest, accumulates && !weighted)?;
+            rounds.refine(recorder, maps_rest, at_once.filter(|_| !weighted))?;
         }
         if steady {
-            rounds.change(recorder, maps_rest && !is_new, is_new, accumulates)?;
-        }
-        if accumulates {
-            if weighted && !steady {
-                rounds.accumulate_again(recorder)?;
-            }
-            rounds.finish_sum(recorder);
-            return Ok(());
-        }
-        if !steady {
+            rounds.change(recorder, maps_rest && !is_new, is_new, at_once)?;
+        } else {
             rounds.weigh(recorder, true);
         }
-        match self.settings.filter {
-            Filter::Pcf => rounds.evaluate(recorder),
-            Filter::Cell => {
-                let list = self.penumbra.record(recorder, frame, self.settings.map)?;
-                rounds.evaluate_cells(recorder, list);
+        match (at_once, list) {
+            (Some(sum), _) => {
+                if weighted && !steady {
+                    rounds.accumulate_again(recorder, sum)?;
+                }
+                rounds.finish_sum(recorder, sum);
             }
+            (None, Some(list)) => rounds.evaluate_cells(recorder, list),
+            (None, None) => rounds.evaluate(recorder),
         }
         Ok(())
     }

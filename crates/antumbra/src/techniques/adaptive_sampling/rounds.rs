@@ -12,6 +12,12 @@ use crate::{Error, Frame, bindings};
 const REPROJECT_GROUPS: u64 = 0;
 const COMPARE_GROUPS: u64 = 16;
 
+/// Maps are added up as soon as they are drawn: at every pixel, or at those of a list for the cells of the light.
+#[derive(Clone, Copy)]
+pub(super) struct Sum<'a> {
+    pub list: Option<&'a PenumbraList>,
+}
+
 /// All that the passes of a frame read and write.
 pub(super) struct Rounds<'a> {
     pub frame: &'a Frame,
@@ -25,14 +31,14 @@ pub(super) struct Rounds<'a> {
 
 impl Rounds<'_> {
     /// Builds the tree from its root, level by level [Schwärzler 2009, section 3.3].
-    pub fn refine(&self, recorder: &mut Recorder, maps_rest: bool, accumulates: bool) -> Result<(), Error> {
+    pub fn refine(&self, recorder: &mut Recorder, maps_rest: bool, at_once: Option<Sum>) -> Result<(), Error> {
         let depth = self.state.shape.depth;
         for level in 0..=depth {
             self.plan(recorder, level, maps_rest);
             for chunk in self.state.chunks(level, maps_rest) {
                 self.draw(recorder, chunk)?;
-                if accumulates {
-                    self.accumulate(recorder, chunk);
+                if let Some(sum) = at_once {
+                    self.accumulate(recorder, chunk, sum);
                 }
             }
             if level < depth {
@@ -43,11 +49,10 @@ impl Rounds<'_> {
     }
 
     /// Draws all maps of the finished tree again, chunk by chunk, and adds them up by their weights.
-    pub fn accumulate_again(&self, recorder: &mut Recorder) -> Result<(), Error> {
-        self.weigh(recorder, true);
+    pub fn accumulate_again(&self, recorder: &mut Recorder, sum: Sum) -> Result<(), Error> {
         for chunk in (0..=self.state.shape.depth).flat_map(|level| self.state.chunks(level, false)) {
             self.draw_maps(recorder, chunk)?;
-            self.accumulate(recorder, chunk);
+            self.accumulate(recorder, chunk, sum);
         }
         Ok(())
     }
@@ -58,15 +63,15 @@ impl Rounds<'_> {
         recorder: &mut Recorder,
         maps_rest: bool,
         jump: bool,
-        accumulates: bool,
+        at_once: Option<Sum>,
     ) -> Result<(), Error> {
         self.steady(recorder, maps_rest);
         self.weigh(recorder, jump);
         // New maps lie wherever there was room.
         for chunk in self.state.chunks(0, true) {
             self.draw(recorder, chunk)?;
-            if accumulates {
-                self.accumulate(recorder, chunk);
+            if let Some(sum) = at_once {
+                self.accumulate(recorder, chunk, sum);
             }
         }
         self.compare(recorder);
@@ -118,19 +123,29 @@ impl Rounds<'_> {
     }
 
     /// Adds what the maps of a chunk see to the visibility.
-    fn accumulate(&self, recorder: &mut Recorder, chunk: Chunk) {
+    fn accumulate(&self, recorder: &mut Recorder, chunk: Chunk, sum: Sum) {
         let stage = self.state.stages.at(chunk.index);
-        let set = self.frame.bindings(&self.tree_bindings(bindings! {
+        let mut more = bindings! {
             light_samples: &self.samples.buffer,
             light_maps: &self.maps.texture,
             map_stage: &stage,
             map_slots: &self.state.slots,
-        }));
-        self.for_each_pixel(recorder, &self.pipelines.accumulate, &set);
+        }
+        .to_vec();
+        let Some((pipeline, list)) = self.pipelines.accumulate_cells.as_ref().zip(sum.list) else {
+            let set = self.frame.bindings(&self.tree_bindings(&more));
+            return self.for_each_pixel(recorder, &self.pipelines.accumulate, &set);
+        };
+        more.extend_from_slice(bindings! { penumbra_pixels: &list.buffer });
+        let set = self.frame.bindings(&self.tree_bindings(&more));
+        recorder.compute("visibility sum", pipeline, &set, Work::Indirect(&list.buffer, 0));
     }
 
     /// Ends the sum that chunks were added to.
-    pub fn finish_sum(&self, recorder: &mut Recorder) {
+    pub fn finish_sum(&self, recorder: &mut Recorder, sum: Sum) {
+        if sum.list.is_some() {
+            return; // Nothing is left to be done.
+        }
         let set = self.frame.bindings(&self.tree_bindings(&[]));
         self.for_each_pixel(recorder, &self.pipelines.finish_sum, &set);
     }

@@ -87,6 +87,15 @@ impl AdaptiveSamplingSettings {
                     .to_owned(),
             });
         }
+        if self.evaluation == Evaluate::Accumulate && self.filter == Filter::Cell && !self.knows_weights() {
+            return Err(SpecError::Value {
+                technique: "adaptive-sampling".to_owned(),
+                key: "weights".to_owned(),
+                value: "paper".to_owned(),
+                expected: "cells of the light are not known while the tree still grows; set filter=pcf, or weights=area"
+                    .to_owned(),
+            });
+        }
         Ok(())
     }
 }
