@@ -43,13 +43,13 @@ crate::settings! {
         /// What a map tells of the light around its sample: its cell (smooth with few maps), or the sample alone (pcf).
         filter: Filter = Filter::Cell, Kind::Choice { options: Filter::OPTIONS };
         /// Reads a side for a cell, for filter=cell.
-        taps: u32 = 4, Kind::Integer { min: 1, max: 64 };
+        taps: u32 = 8, Kind::Integer { min: 1, max: 64 };
         /// Width of the filter on each map in texels a side, for filter=pcf and for comparisons; 1 is a single lookup.
         pcf: u32 = 2, Kind::Integer { min: 1, max: 33 };
         /// What is compared: visibility where it is most (local), or depth over the picture (absolute, relative).
         criterion: Criterion = Criterion::Local, Kind::Choice { options: Criterion::OPTIONS };
         /// Change of the visibility of a tile of the screen that is worth a split, for criterion=local; 0 splits all.
-        tolerance: f32 = 0.01, Kind::Number { min: 0.0, max: 1.0 };
+        tolerance: f32 = 0.05, Kind::Number { min: 0.0, max: 1.0 };
         /// Share of differing pixels, in units of a map's texels, that is worth a split (eq. 4); 0 splits all.
         epsilon: f32 = 0.01, Kind::Number { min: 0.0, max: 1000.0 };
         /// Difference of depths that makes a pixel differ: metres (absolute) or a part of the depth (relative).

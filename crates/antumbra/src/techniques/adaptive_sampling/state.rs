@@ -57,7 +57,7 @@ const DEEPEST_RECTANGLE: u32 = 5;
 const POINTS: f32 = 32_768.0;
 
 /// See `AdaptiveUniform::pace`: too little to be seen as a jump.
-const PACE: f32 = 0.02;
+const PACE: f32 = 0.01;
 
 /// Layers that are drawn and added up at a time where memory is to be saved.
 const CHUNK: u32 = 8;
