@@ -18,10 +18,12 @@ fn small(info: &BuiltinInfo) -> String {
     format!("{}:{}", info.name, list.join(","))
 }
 
-/// The SPEC of a technique with a small map, if it has one.
+/// The SPEC of a technique with small and few maps, if it has them.
 fn quick(info: &TechniqueInfo) -> String {
-    let has_map = info.settings.iter().any(|s| s.key == "map");
-    if has_map { format!("{}:map=256", info.name) } else { info.name.to_owned() }
+    let small = [("map", 256), ("samples", 6), ("maps", 9)];
+    let its = small.iter().filter(|(key, _)| info.settings.iter().any(|s| s.key == *key));
+    let values: Vec<String> = its.map(|(key, value)| format!("{key}={value}")).collect();
+    format!("{}:{}", info.name, values.join(","))
 }
 
 /// What is wrong with a technique on a scene.
