@@ -6,6 +6,8 @@ use super::axes::{Axis, HEIGHT, RIGHT, Titles, WIDTH, grid};
 
 /// Room around the curves.
 const ROOM: f64 = 0.05;
+/// Width of a label's letter.
+const LETTER: f64 = 7.8;
 /// As many colours as the style sheet has.
 pub const COLORS: usize = 8;
 
@@ -128,13 +130,13 @@ fn drawn_guide(guide: &Guide, (x0, y0): (f64, f64), x: &Axis, y: &Axis) -> Marku
     let line = (0..STEPS).map(|i| (x0 * at(i), y0 * at(i).powf(guide.exponent)));
     let seen: Vec<_> = line.take_while(|(px, py)| x.holds(*px) && y.holds(*py)).collect();
     let end = seen.last().copied().unwrap_or((x0, y0));
-    let (ex, ey) = (x.place(end.0), y.place(end.1));
+    let ((sx, sy), (ex, ey)) = ((x.place(x0), y.place(y0)), (x.place(end.0), y.place(end.1)));
+    // The name ends where the line does, so high that the line passes below its first letter.
+    let slope = (ey - sy) / (ex - sx).max(1.0);
+    let above = 4.0 + slope.max(0.0) * guide.label.chars().count() as f64 * LETTER;
     html! {
-        line.guide x1=(format!("{:.1}", x.place(x0))) y1=(format!("{:.1}", y.place(y0)))
-            x2=(format!("{ex:.1}")) y2=(format!("{ey:.1}")) {}
-        text.label x=(format!("{:.1}", (ex + 4.0).min(RIGHT))) y=(format!("{:.1}", ey - 8.0)) text-anchor="end" {
-            (guide.label)
-        }
+        line.guide x1=(format!("{sx:.1}")) y1=(format!("{sy:.1}")) x2=(format!("{ex:.1}")) y2=(format!("{ey:.1}")) {}
+        text.label x=(format!("{:.1}", ex.min(RIGHT))) y=(format!("{:.1}", ey - above)) text-anchor="end" { (guide.label) }
     }
 }
 
