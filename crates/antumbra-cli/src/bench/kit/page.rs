@@ -93,7 +93,7 @@ fn drawn_table(table: &Table) -> Markup {
                         @for row in &group.rows {
                             tr {
                                 @for (i, cell) in row.iter().enumerate() {
-                                    @if i == 0 { th scope="row" { code { (cell) } } } @else { td { (cell) } }
+                                    @if i == 0 { th.spelled scope="row" { (spelled(cell)) } } @else { td { (cell) } }
                                 }
                             }
                         }
@@ -102,4 +102,9 @@ fn drawn_table(table: &Table) -> Markup {
             }
         }
     }
+}
+
+/// A SPEC, which may go on in another line after a comma.
+fn spelled(spec: &str) -> Markup {
+    html! { code { @for part in spec.split_inclusive(',') { (part) wbr; } } }
 }
