@@ -24,7 +24,7 @@ const BASE: &str = "uniform-sampling:map=512,samples=128";
 /// The rows of every scene; the first two are the adaptive ones. Maps are the paper's.
 const ROWS: [&str; 5] = [
     "adaptive-sampling:map=512",
-    "adaptive-sampling:map=512,criterion=relative,weights=paper",
+    "adaptive-sampling:map=512,criterion=relative,weights=paper,filter=pcf",
     "uniform-sampling:map=512,samples=81",
     BASE,
     "uniform-sampling:map=512,samples=256",
@@ -132,11 +132,16 @@ fn rows() -> Vec<String> {
 }
 
 fn by_epsilon(pcf: u32) -> Vec<String> {
-    EPSILONS.map(|e| format!("adaptive-sampling:map=512,criterion=relative,epsilon={e},pcf={pcf}")).to_vec()
+    EPSILONS.map(|e| format!("adaptive-sampling:map=512,criterion=relative,epsilon={e},filter=pcf,pcf={pcf}")).to_vec()
 }
 
 fn by_tolerance(pcf: u32) -> Vec<String> {
-    TOLERANCES.map(|t| format!("adaptive-sampling:map=512,criterion=local,tolerance={t},pcf={pcf}")).to_vec()
+    TOLERANCES.map(|t| format!("adaptive-sampling:map=512,criterion=local,tolerance={t},filter=pcf,pcf={pcf}")).to_vec()
+}
+
+/// Each map for its cell of the light: there is no width to choose.
+fn by_cells() -> Vec<String> {
+    TOLERANCES.map(|t| format!("adaptive-sampling:map=512,criterion=local,tolerance={t},filter=cell")).to_vec()
 }
 
 fn by_number(pcf: u32) -> Vec<String> {
@@ -149,7 +154,8 @@ fn by_count(pattern: &str) -> Vec<String> {
 }
 
 fn sweep() -> Vec<String> {
-    PCF.into_iter().flat_map(|pcf| [by_epsilon(pcf), by_tolerance(pcf), by_number(pcf)].concat()).collect()
+    let of_width = |pcf| [by_epsilon(pcf), by_tolerance(pcf), by_number(pcf)].concat();
+    PCF.into_iter().flat_map(of_width).chain(by_cells()).collect()
 }
 
 fn patterns() -> Vec<String> {
@@ -163,8 +169,8 @@ fn findings(trials: Vec<Trial>) -> Findings {
     let mut parts = vec![scenes_part(scenes)];
     if let [sweeps, patterns] = rest {
         parts.extend([
-            sweep_part(sweeps, "Epsilon", "relative", by_epsilon),
-            sweep_part(sweeps, "Tolerance", "local", by_tolerance),
+            sweep_part(sweeps, "Epsilon", "relative", by_epsilon, &[]),
+            sweep_part(sweeps, "Tolerance", "local", by_tolerance, &by_cells()),
             patterns_part(patterns),
         ]);
     }
@@ -258,11 +264,12 @@ fn row(trial: &Trial, setup: &Setup, run: &Run) -> Vec<String> {
     ]
 }
 
-/// Error against milliseconds as a threshold falls, beside fixed samples, for each width of the filter.
-fn sweep_part(trial: &Trial, what: &str, criterion: &str, own: fn(u32) -> Vec<String>) -> Part {
+/// Error against milliseconds as a threshold falls, beside fixed samples, for each width of the filter and for cells.
+fn sweep_part(trial: &Trial, what: &str, criterion: &str, own: fn(u32) -> Vec<String>, cells: &[String]) -> Part {
     let adaptive = |(color, pcf)| error_by_ms(trial, format!("adaptive, pcf={pcf}"), (color, false), &own(pcf));
     let fixed = |(color, pcf)| error_by_ms(trial, format!("fixed, pcf={pcf}"), (color, true), &by_number(pcf));
     let widths = || PCF.into_iter().enumerate();
+    let of_cells = error_by_ms(trial, "adaptive, cells".to_owned(), (PCF.len(), false), cells);
     let values = if own(1).len() == EPSILONS.len() { EPSILONS.as_slice() } else { &TOLERANCES };
     let values: Vec<String> = values.iter().map(f64::to_string).collect();
     Part {
@@ -279,7 +286,11 @@ fn sweep_part(trial: &Trial, what: &str, criterion: &str, own: fn(u32) -> Vec<St
             x: "GPU milliseconds a frame".into(),
             y: "average error".into(),
             less_is_better: true,
-            curves: widths().map(adaptive).chain(widths().map(fixed)).collect(),
+            curves: widths()
+                .map(adaptive)
+                .chain(Some(of_cells).filter(|curve| !curve.points.is_empty()))
+                .chain(widths().map(fixed))
+                .collect(),
             guides: Vec::new(),
         })],
     }
@@ -334,7 +345,7 @@ mod tests {
     #[test]
     fn every_spec_and_every_scene_is_known() {
         let texts = [rows(), sweep(), patterns()].concat();
-        assert_eq!(specs(texts).unwrap().len(), ROWS.len() + 4 * (5 + 6 + 8) + 3 * 5);
+        assert_eq!(specs(texts).unwrap().len(), ROWS.len() + 4 * (5 + 6 + 8) + 6 + 3 * 5);
         for setup in &SETUPS {
             let triangles = setup.scene().unwrap().triangle_count();
             assert!((1000..20_000).contains(&triangles), "{}: {triangles}", setup.name);
@@ -362,7 +373,7 @@ mod tests {
     #[test]
     fn sweeps_become_a_curve_for_each_width_of_the_filter() {
         let runs = sweep().iter().enumerate().map(|(i, spec)| run(spec, 1.0 + i as f64, &[])).collect();
-        let part = sweep_part(&trial("sweeps", runs), "Epsilon", "relative", by_epsilon);
+        let part = sweep_part(&trial("sweeps", runs), "Epsilon", "relative", by_epsilon, &[]);
         assert!(part.text.contains("epsilon = 0.1, 0.03, 0.01, 0.003, 0.001"), "{}", part.text);
         let [Shown::Lines(lines)] = &part.shown[..] else { panic!("a plot") };
         let points: Vec<_> = lines.curves.iter().map(|c| c.points.len()).collect();

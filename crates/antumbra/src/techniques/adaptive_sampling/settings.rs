@@ -49,7 +49,7 @@ crate::settings! {
         /// What is compared: visibility where it is most (local), or depth over the picture (absolute, relative).
         criterion: Criterion = Criterion::Local, Kind::Choice { options: Criterion::OPTIONS };
         /// Change of the visibility of a tile of the screen that is worth a split, for criterion=local; 0 splits all.
-        tolerance: f32 = 0.05, Kind::Number { min: 0.0, max: 1.0 };
+        tolerance: f32 = 0.07, Kind::Number { min: 0.0, max: 1.0 };
         /// Share of differing pixels, in units of a map's texels, that is worth a split (eq. 4); 0 splits all.
         epsilon: f32 = 0.01, Kind::Number { min: 0.0, max: 1000.0 };
         /// Difference of depths that makes a pixel differ: metres (absolute) or a part of the depth (relative).
