@@ -42,7 +42,7 @@ crate::settings! {
         map: u32 = 512, Kind::Integer { min: 16, max: 16384 };
         /// What a map tells of the light around its sample: its cell (smooth with few maps), or the sample alone (pcf).
         filter: Filter = Filter::Cell, Kind::Choice { options: Filter::OPTIONS };
-        /// Reads a side for a cell, for filter=cell.
+        /// Reads a side for a cell, for filter=cell; twice as many for steady=true, where edges move.
         taps: u32 = 8, Kind::Integer { min: 1, max: 64 };
         /// Width of the filter on each map in texels a side, for filter=pcf and for comparisons; 1 is a single lookup.
         pcf: u32 = 2, Kind::Integer { min: 1, max: 33 };

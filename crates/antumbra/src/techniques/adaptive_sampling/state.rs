@@ -293,7 +293,8 @@ fn uniform_of(
         by_area: u32::from(settings.weights == Weights::Area),
         light_size,
         pace: PACE,
-        taps: settings.taps as f32,
+        // An edge that moves crosses half as much of a cell at a time.
+        taps: (settings.taps * if settings.steady { 2 } else { 1 }) as f32,
     }
 }
 
