@@ -10,6 +10,7 @@ use antumbra::Gpu;
 use antumbra_scene::Scene;
 use pollster::block_on;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Renders and writes what was asked for.
@@ -34,7 +35,8 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
         outputs.stage(&file.path, output::encode_values(file.format, size, &values))?;
     }
     if let Some(path) = &args.stats {
-        stage_stats(&mut outputs, path, &Stats::new(args, &gpu, &scene, size, &cost))?;
+        let figures = block_on(technique.figures(&gpu))?;
+        stage_stats(&mut outputs, path, &Stats::new(args, &gpu, &scene, size, (&cost, figures)))?;
     }
     progress::check_cancelled()?;
     outputs.commit()
@@ -56,12 +58,21 @@ struct Stats<'a> {
     height: u32,
     triangles: usize,
     frames: u32,
+    /// What the last frame did, such as the number of maps.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    figures: BTreeMap<&'static str, f64>,
     #[serde(flatten)]
     cost: &'a Cost,
 }
 
 impl<'a> Stats<'a> {
-    fn new(args: &'a RenderArgs, gpu: &'a Gpu, scene: &'a Scene, size: [u32; 2], cost: &'a Cost) -> Self {
+    fn new(
+        args: &'a RenderArgs,
+        gpu: &'a Gpu,
+        scene: &'a Scene,
+        size: [u32; 2],
+        (cost, figures): (&'a Cost, Vec<(&'static str, f64)>),
+    ) -> Self {
         let spec = &args.technique.0;
         Stats {
             adapter: &gpu.info.name,
@@ -72,6 +83,7 @@ impl<'a> Stats<'a> {
             height: size[1],
             triangles: scene.triangle_count(),
             frames: args.gpu.frames,
+            figures: figures.into_iter().collect(),
             cost,
         }
     }

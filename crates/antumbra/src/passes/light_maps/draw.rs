@@ -149,7 +149,7 @@ impl LightMaps {
         }
     }
 
-    /// Draws the slots that belong to a stage: `stages[index]`, whose value is `stage`.
+    /// Draws the slots that belong to the stage at `index`.
     pub(crate) fn record(
         &self,
         recorder: &mut Recorder,
@@ -157,9 +157,9 @@ impl LightMaps {
         samples: &LightSamples,
         slots: &wgpu::Buffer,
         stages: &UniformArray<MapStage>,
-        (index, stage): (u32, MapStage),
+        index: u32,
     ) -> Result<(), Error> {
-        let stage_binding = stages.at(index);
+        let (stage, stage_binding) = (stages.value(index), stages.at(index));
         let set = bindings! {
             map_stage: &stage_binding,
             light_samples: &samples.buffer,

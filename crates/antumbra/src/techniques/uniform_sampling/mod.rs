@@ -50,6 +50,8 @@ pub struct UniformSampling {
     plan: Option<Plan>,
     samples: Option<LightSamples>,
     maps: Option<LightMaps>,
+    /// A round of drawing for each part of the maps that is in memory at once.
+    stages: Option<UniformArray<MapStage>>,
     /// What the maps were drawn for, if they still hold it.
     drawn: Option<Drawn>,
 }
@@ -97,6 +99,13 @@ impl Plan {
     }
 }
 
+impl Plan {
+    /// How many times maps are drawn and added up.
+    fn parts(&self) -> u32 {
+        (self.places.len() as u32).div_ceil(self.part)
+    }
+}
+
 impl Describe for UniformSampling {
     type Settings = UniformSamplingSettings;
     const ABOUT: About = About {
@@ -107,7 +116,7 @@ impl Describe for UniformSampling {
     };
 
     fn make(_gpu: &Gpu, settings: UniformSamplingSettings) -> Result<Self, Error> {
-        Ok(UniformSampling { settings, plan: None, samples: None, maps: None, drawn: None })
+        Ok(UniformSampling { settings, plan: None, samples: None, maps: None, stages: None, drawn: None })
     }
 }
 
@@ -116,24 +125,25 @@ impl Technique for UniformSampling {
         let gpu = recorder.gpu;
         if self.plan.as_ref().is_none_or(|p| p.light_size != frame.light.size) {
             self.plan = Some(Plan::new(gpu, &self.settings, frame.light.size)?);
-            self.drawn = None;
+            self.stages = None;
         }
         let plan = self.plan.as_ref().expect("just made");
-        let count = plan.places.len() as u32;
+        let (count, parts) = (plan.places.len() as u32, plan.parts());
         let samples = LightSamples::ensure(&mut self.samples, gpu, frame, &plan.places);
-        if !self.maps.as_ref().is_some_and(|m| m.fits(gpu, self.settings.map, plan.part, &frame.casters)) {
-            self.drawn = None;
-        }
+        let had_maps = self.maps.as_ref().is_some_and(|m| m.fits(gpu, self.settings.map, plan.part, &frame.casters));
         let maps = LightMaps::ensure(&mut self.maps, gpu, self.settings.map, plan.part, &frame.casters)?;
+        let is_new = !had_maps || self.stages.is_none();
+        if is_new {
+            let stage = |p: u32| maps.stage(STAGE, p * plan.part, 0..plan.part.min(count - p * plan.part));
+            self.stages = Some(UniformArray::new(gpu, "map stages", &(0..parts).map(stage).collect::<Vec<_>>()));
+        }
+        let stages = self.stages.as_ref().expect("just made");
         let now = Drawn::of(frame);
-        let are_same = self.drawn.as_ref().is_some_and(|d| d.is(&now));
-        let still_there = frame.casters_rest && plan.part == count && are_same;
-        for part in 0..count.div_ceil(plan.part) {
+        let are_same = !is_new && self.drawn.as_ref().is_some_and(|d| d.is(&now));
+        let still_there = frame.casters_rest && parts == 1 && are_same;
+        for part in 0..parts {
             if !still_there {
-                let first = part * plan.part;
-                let stage = maps.stage(STAGE, first, 0..plan.part.min(count - first));
-                let stages: UniformArray<MapStage> = UniformArray::new(gpu, "map stage", &[stage]);
-                maps.record(recorder, &frame.casters, samples, &plan.slots, &stages, (0, stage))?;
+                maps.record(recorder, &frame.casters, samples, &plan.slots, stages, part)?;
             }
             plan.evaluation.record(recorder, frame, samples, maps, &plan.entries, part);
         }
