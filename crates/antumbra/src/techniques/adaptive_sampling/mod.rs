@@ -227,3 +227,6 @@ impl AdaptiveSampling {
         Ok(Prepared { maps_rest: rest, is_new: !(same_maps && same_state) })
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,74 @@
+//! Sampling of the light by many shadow maps, fixed in number or refined: what must be the same by two ways, how far
+//! from the truth it is, and where and when maps are spent.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod accuracy;
+mod identities;
+mod refinement;
+mod rest;
+
+use antumbra::Technique;
+use antumbra::scene::SceneRenderer;
+use antumbra_scene::{RectLight, Scene};
+use common::{drawn, gpu, shadowed, technique};
+use glam::Vec2;
+use pollster::block_on;
+
+/// Pixels of a small picture.
+const SIZE: [u32; 2] = [96, 72];
+
+/// A scene with its surfaces drawn in a small picture.
+fn seen(scene: &Scene) -> SceneRenderer {
+    drawn(scene, SIZE)
+}
+
+/// A picture by a technique that may have been used before.
+fn picture(renderer: &SceneRenderer, technique: &mut dyn Technique) -> Vec<f32> {
+    shadowed(renderer, technique).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// A picture by a new instance.
+fn fresh(renderer: &SceneRenderer, spec: &str) -> Vec<f32> {
+    shadowed(renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{spec}: {e}"))
+}
+
+/// A figure of the last frame.
+fn figure(technique: &dyn Technique, name: &str) -> u32 {
+    let figures = block_on(technique.figures(gpu())).unwrap_or_else(|e| panic!("{e}"));
+    let found = figures.iter().find(|(n, _)| *n == name);
+    found.unwrap_or_else(|| panic!("no `{name}` among {figures:?}")).1 as u32
+}
+
+/// Panics where two pictures differ by a bit.
+fn assert_same(a: &[f32], b: &[f32], what: &str) {
+    assert_eq!(a.len(), b.len());
+    let places: Vec<usize> = (0..a.len()).filter(|i| a[*i].to_bits() != b[*i].to_bits()).collect();
+    if let Some(&i) = places.first() {
+        panic!("{what}: {} of {} pixels differ, number {i} is {} and {}", places.len(), a.len(), a[i], b[i]);
+    }
+}
+
+/// The largest difference of two pictures.
+fn largest_difference(a: &[f32], b: &[f32]) -> f32 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
+
+/// True if a good part of a picture is penumbra and another is lit: one that is all lit would pass many a test.
+fn has_penumbra(picture: &[f32]) -> bool {
+    let percent =
+        |low: f32, high: f32| picture.iter().filter(|v| (low..=high).contains(v)).count() * 100 / picture.len();
+    percent(0.05, 0.95) >= 2 && percent(0.99, 1.0) >= 10
+}
+
+/// A box over the ground, under a light of `size` metres that shines aslant.
+fn hovering(size: Vec2) -> Scene {
+    let meshes = vec![common::ground(20.0), common::cuboid([-0.5, 0.7, -0.3], [0.4, 1.0, 0.35])];
+    let camera = common::camera([1.5, 1.7, 2.6], [0.1, 0.3, 0.1], 42.0);
+    let light = RectLight { size, ..common::light([-0.7, 3.2, 0.5], [0.0, 0.3, 0.0], 1.0) };
+    Scene {
+        name: format!("a box under a light of {} m x {} m", size.x, size.y),
+        ..common::scene(meshes, camera, light)
+    }
+}

@@ -1,0 +1,100 @@
+//! What may be kept from frame to frame while casters rest.
+
+use crate::common::{camera, gpu, submit, technique};
+use crate::{SIZE, assert_same, figure, fresh, hovering, picture, seen};
+use antumbra::scene::SceneRenderer;
+use antumbra::{Recorder, Technique, View};
+use antumbra_scene::Camera;
+use glam::{Vec2, Vec3};
+
+/// A box over the ground, whose host says that no caster moves.
+fn resting() -> SceneRenderer {
+    let mut renderer = seen(&hovering(Vec2::new(0.9, 0.7)));
+    renderer.frame.casters_rest = true;
+    renderer
+}
+
+/// Moves camera and light; the frustum stays.
+fn change(renderer: &mut SceneRenderer, camera: &Camera, light_shift: Vec3) {
+    let (mut light, frustum) = (renderer.frame.light, renderer.frame.frustum);
+    light.center += light_shift;
+    renderer.frame.update(gpu(), View::of_camera(camera, SIZE), light, frustum);
+    submit(|recorder| renderer.record_geometry(recorder)).unwrap_or_else(|e| panic!("{e}"));
+}
+
+fn near() -> Camera {
+    camera([1.5, 1.7, 2.6], [0.1, 0.3, 0.1], 42.0)
+}
+
+/// Sees the other side of the box and of its shadow.
+fn aside() -> Camera {
+    camera([-1.9, 1.2, 1.6], [0.2, 0.2, 0.0], 42.0)
+}
+
+#[test]
+fn maps_of_resting_casters_are_drawn_once() {
+    for settings in ["maps=20", "maps=20,filter=pcf", "depth=2", "depth=2,criterion=relative,space=light"] {
+        let spec = format!("adaptive-sampling:map=64,{settings}");
+        let mut renderer = resting();
+        let mut kept = technique(&spec);
+        let mut frame = |renderer: &SceneRenderer, what: &str| {
+            let found = picture(renderer, &mut *kept);
+            assert_same(&found, &fresh(renderer, &spec), &format!("{settings}: {what}, a used instance and a new one"));
+            let (maps, drawn) = (figure(&*kept, "maps"), figure(&*kept, "maps drawn"));
+            println!("{settings}: {what}: {maps} maps, {drawn} drawn");
+            (found, maps, drawn)
+        };
+        let (first, maps, drawn) = frame(&renderer, "the first frame");
+        assert!(maps > 9 && drawn == maps, "{settings}: {drawn} of {maps} maps drawn in the first frame");
+        let (second, _, drawn) = frame(&renderer, "nothing moves");
+        assert_eq!(drawn, 0, "{settings}: maps drawn where nothing moves");
+        assert_same(&second, &first, settings);
+
+        change(&mut renderer, &aside(), Vec3::ZERO);
+        let (_, maps, drawn) = frame(&renderer, "the camera moves");
+        assert!(drawn < maps, "{settings}: {drawn} of {maps} maps drawn as the camera moves");
+        change(&mut renderer, &near(), Vec3::ZERO);
+        let (back, ..) = frame(&renderer, "the camera moves back");
+        assert_same(&back, &first, settings);
+
+        change(&mut renderer, &near(), Vec3::new(0.1, 0.0, 0.2));
+        let (_, maps, drawn) = frame(&renderer, "the light moves");
+        assert_eq!(drawn, maps, "{settings}: maps drawn as the light moves");
+        renderer.frame.casters_rest = false;
+        let (_, maps, drawn) = frame(&renderer, "casters move");
+        assert_eq!(drawn, maps, "{settings}: maps drawn as casters move");
+    }
+}
+
+/// True if a frame draws maps.
+fn draws(renderer: &SceneRenderer, technique: &mut dyn Technique) -> bool {
+    let mut timer = antumbra::Timer::new(gpu()).unwrap_or_else(|e| panic!("{e}"));
+    let mut encoder = gpu().device.create_command_encoder(&Default::default());
+    let recorded = technique.record(&renderer.frame, &mut Recorder::timed(gpu(), &mut encoder, &timer));
+    recorded.unwrap_or_else(|e| panic!("{e}"));
+    let passes = timer.finish(gpu(), encoder).unwrap_or_else(|e| panic!("{e}"));
+    passes.iter().any(|(name, _)| name == "light maps")
+}
+
+#[test]
+fn fixed_samples_of_resting_casters_are_drawn_once() {
+    for (way, keeps) in [("array", true), ("accumulate", false)] {
+        let spec = format!("uniform-sampling:map=128,samples=16,evaluation={way}");
+        let mut renderer = resting();
+        let mut kept = technique(&spec);
+        let mut frame = |renderer: &SceneRenderer, what: &str| {
+            let is_drawn = draws(renderer, &mut *kept);
+            let found = picture(renderer, &mut *kept);
+            assert_same(&found, &fresh(renderer, &spec), &format!("{way}: {what}, a used instance and a new one"));
+            is_drawn
+        };
+        assert!(frame(&renderer, "the first frame"));
+        assert_eq!(frame(&renderer, "nothing moves"), !keeps, "{way}: maps drawn where nothing moves");
+        change(&mut renderer, &aside(), Vec3::ZERO);
+        assert_eq!(frame(&renderer, "the camera moves"), !keeps, "{way}: maps drawn as the camera moves");
+        change(&mut renderer, &near(), Vec3::new(0.1, 0.0, 0.2));
+        assert!(frame(&renderer, "the light moves"), "{way}: no maps drawn as the light moves");
+        renderer.frame.casters_rest = false;
+        assert!(frame(&renderer, "casters move"), "{way}: no maps drawn as casters move");
+    }
+}
