@@ -54,10 +54,8 @@ impl Texture {
             usage,
             view_formats: &[],
         });
-        let whole = wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
-        };
+        let whole =
+            wgpu::TextureViewDescriptor { dimension: Some(wgpu::TextureViewDimension::D2Array), ..Default::default() };
         Texture { view: texture.create_view(&whole), texture }
     }
 

@@ -75,8 +75,7 @@ impl LightMaps {
         let group_count = capacity.div_ceil(layers_per_group);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let layers = group_count * layers_per_group;
-        let texture =
-            Texture::array(gpu, "light maps", [size; 2], layers, wgpu::TextureFormat::Depth32Float, usage);
+        let texture = Texture::array(gpu, "light maps", [size; 2], layers, wgpu::TextureFormat::Depth32Float, usage);
         let batch_count = casters.batches.len().max(1) as u32;
         let one = [3 * CLUSTER_TRIANGLES, 0, 0, 0];
         let empty = one.repeat((group_count * batch_count) as usize);
@@ -88,7 +87,11 @@ impl LightMaps {
             layers_per_group,
             item_count: casters.item_count,
             batch_count,
-            visible: storage_buffer(gpu, "visible clusters", u64::from(casters.item_count) * u64::from(group_count) * 4),
+            visible: storage_buffer(
+                gpu,
+                "visible clusters",
+                u64::from(casters.item_count) * u64::from(group_count) * 4,
+            ),
             draws: storage_buffer(gpu, "cluster draws", no_draws.size()),
             no_draws,
             numbers: UniformArray::new(
@@ -176,10 +179,8 @@ impl LightMaps {
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
         let masked = recorder.gpu.render_pipeline(&key.clone().feature("masked", true), &target)?;
         let wipe_target = RenderTarget { depth: Some(wgpu::CompareFunction::Always), ..target };
-        let wipe = recorder.gpu.render_pipeline(
-            &ShaderKey { module: "passes::light_maps::wipe", ..key },
-            &wipe_target,
-        )?;
+        let wipe =
+            recorder.gpu.render_pipeline(&ShaderKey { module: "passes::light_maps::wipe", ..key }, &wipe_target)?;
         for group in stage.first_group..stage.first_group + stage.group_count {
             let view = &self.groups[group as usize];
             let number = self.numbers.at(group);
@@ -224,7 +225,12 @@ impl LightMaps {
     }
 
     fn key(module: &'static str) -> ShaderKey {
-        ShaderKey::new(module).with::<LightSample>().with::<MapSlot>().with::<MapStage>().with::<GroupUniform>().with::<BatchLayout>()
+        ShaderKey::new(module)
+            .with::<LightSample>()
+            .with::<MapSlot>()
+            .with::<MapStage>()
+            .with::<GroupUniform>()
+            .with::<BatchLayout>()
     }
 
     /// GPU memory by pass.

@@ -8,8 +8,8 @@ pub(crate) mod evaluate;
 
 pub use draw::LightMaps;
 pub(crate) use draw::{MapSlot, MapStage};
-pub use evaluate::Evaluation;
 pub(crate) use evaluate::Entry;
+pub use evaluate::Evaluation;
 
 use crate::resource::storage_of;
 use crate::{Casters, Frame, Gpu, ShadowFrustum, gpu_struct};

@@ -9,8 +9,8 @@ pub(crate) mod state;
 pub use settings::{AdaptiveSamplingSettings, Criterion, Filter, Space};
 
 use crate::frame::FrameUniform;
-use crate::passes::{classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid};
 use crate::passes::light_maps::{Drawn, Entry, LightMaps, LightSample, LightSamples, MapSlot, MapStage};
+use crate::passes::{classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::Recorder;
 use crate::shader::ShaderKey;
@@ -203,16 +203,15 @@ impl AdaptiveSampling {
     /// Makes what the frame needs, and draws what the light's centre sees if comparisons are made there.
     fn prepare(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<Prepared, Error> {
         let (gpu, settings) = (recorder.gpu, &self.settings);
-        let shape = Shape::new(frame.light.size, settings.depth);
+        let shape = Shape::of_settings(frame.light.size, settings);
         let capacity = State::capacity(gpu, settings, shape);
         let layers = State::layers(gpu, settings, capacity);
         let same_maps = self.maps.as_ref().is_some_and(|m| m.fits(gpu, settings.map, layers, &frame.casters));
         let maps = LightMaps::ensure(&mut self.maps, gpu, settings.map, layers, &frame.casters)?;
         let picture = frame.geometry.size;
-        let same_state =
-            self.state.as_ref().is_some_and(|s| {
-                (s.shape, s.picture, s.capacity, s.light_size) == (shape, picture, capacity, frame.light.size)
-            });
+        let same_state = self.state.as_ref().is_some_and(|s| {
+            (s.shape, s.picture, s.capacity, s.light_size) == (shape, picture, capacity, frame.light.size)
+        });
         if !(same_maps && same_state) {
             self.state = Some(State::new(gpu, settings, shape, (picture, frame.light.size), maps)?);
         }

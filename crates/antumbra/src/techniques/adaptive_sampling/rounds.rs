@@ -1,9 +1,9 @@
 //! The rounds of a frame: plan, draw, reproject, compare; then weigh and evaluate.
 
-use super::state::{Chunk, State};
 use super::Pipelines;
-use crate::passes::{classify::PenumbraList, depth_map::DepthMap};
+use super::state::{Chunk, State};
 use crate::passes::light_maps::{LightMaps, LightSamples};
+use crate::passes::{classify::PenumbraList, depth_map::DepthMap};
 use crate::pipeline::{Binding, ComputePipeline};
 use crate::recorder::{Recorder, Work};
 use crate::{Error, Frame, bindings};
@@ -36,7 +36,10 @@ impl Rounds<'_> {
         for level in 0..=depth {
             self.plan(recorder, level, maps_rest);
             for chunk in self.state.chunks(level, maps_rest) {
-                self.draw(recorder, chunk)?;
+                self.draw_maps(recorder, chunk)?;
+                if level < depth {
+                    self.reproject(recorder, chunk);
+                }
                 if let Some(sum) = at_once {
                     self.accumulate(recorder, chunk, sum);
                 }
@@ -69,7 +72,8 @@ impl Rounds<'_> {
         self.weigh(recorder, jump);
         // New maps lie wherever there was room.
         for chunk in self.state.chunks(0, true) {
-            self.draw(recorder, chunk)?;
+            self.draw_maps(recorder, chunk)?;
+            self.reproject(recorder, chunk);
             if let Some(sum) = at_once {
                 self.accumulate(recorder, chunk, sum);
             }
@@ -85,9 +89,8 @@ impl Rounds<'_> {
         recorder.compute("refinement", &self.pipelines.plan, &set, Work::Groups([1, 1, 1]));
     }
 
-    /// Draws the new maps of a chunk and notes what they hold at the points that are compared.
-    fn draw(&self, recorder: &mut Recorder, chunk: Chunk) -> Result<(), Error> {
-        self.draw_maps(recorder, chunk)?;
+    /// Notes what the new maps of a chunk hold at the points that are compared.
+    fn reproject(&self, recorder: &mut Recorder, chunk: Chunk) {
         let state = self.state;
         let stage = state.stages.at(chunk.index);
         let mut more = bindings! {
@@ -107,9 +110,9 @@ impl Rounds<'_> {
             false => Work::Indirect(&state.tree, REPROJECT_GROUPS),
         };
         recorder.compute("reprojection", &self.pipelines.reproject, &set, work);
-        Ok(())
     }
 
+    /// Draws the new maps of a chunk.
     fn draw_maps(&self, recorder: &mut Recorder, chunk: Chunk) -> Result<(), Error> {
         let (slots, stages) = (&self.state.slots, &self.state.stages);
         self.maps.record(recorder, &self.frame.casters, self.samples, slots, stages, chunk.index)

@@ -92,8 +92,9 @@ impl AdaptiveSamplingSettings {
                 technique: "adaptive-sampling".to_owned(),
                 key: "weights".to_owned(),
                 value: "paper".to_owned(),
-                expected: "cells of the light are not known while the tree still grows; set filter=pcf, or weights=area"
-                    .to_owned(),
+                expected:
+                    "cells of the light are not known while the tree still grows; set filter=pcf, or weights=area"
+                        .to_owned(),
             });
         }
         Ok(())

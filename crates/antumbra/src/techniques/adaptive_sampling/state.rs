@@ -82,6 +82,17 @@ impl Shape {
         Shape { axes, depth: depth.min(deepest) }
     }
 
+    /// For a light of `size` metres, as fine as the settings can make it: by the local criterion, a cell that is smaller
+    /// than the tolerance is never split.
+    pub fn of_settings(size: Vec2, settings: &AdaptiveSamplingSettings) -> Shape {
+        let shape = Shape::new(size, settings.depth);
+        let can_split = |level: &u32| 1.0 / shape.cells_at(*level) as f32 >= settings.tolerance;
+        match settings.criterion {
+            Criterion::Local => Shape { depth: (0..shape.depth).take_while(can_split).count() as u32, ..shape },
+            Criterion::Absolute | Criterion::Relative => shape,
+        }
+    }
+
     fn cells_at(&self, level: u32) -> u32 {
         1 << (level * (self.axes.x + self.axes.y))
     }
@@ -188,7 +199,17 @@ impl State {
         });
         let mut stages = Vec::new();
         let chunks = [false, true].map(|rest| {
-            (0..=shape.depth).map(|level| push_stages(&mut stages, maps, layers, if rest { 0..capacity } else { shape.layers_of(level, capacity) }, level)).collect()
+            (0..=shape.depth)
+                .map(|level| {
+                    push_stages(
+                        &mut stages,
+                        maps,
+                        layers,
+                        if rest { 0..capacity } else { shape.layers_of(level, capacity) },
+                        level,
+                    )
+                })
+                .collect()
         });
         let empty = vec![MapSlot { sample: u32::MAX, stage: UNUSED }; capacity as usize];
         let points = (uniform.tiles.x * uniform.tiles.y).next_multiple_of(64) * 64;
@@ -238,19 +259,15 @@ impl State {
     /// Number of samples, and of maps that the last frame drew.
     pub async fn figures(&self, gpu: &Gpu) -> Result<Vec<(&'static str, f64)>, Error> {
         let bytes = read_buffer(gpu, &self.tree).await?;
-        let word = |i: usize| f64::from(u32::from_le_bytes([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]]));
+        let word = |i: usize| {
+            f64::from(u32::from_le_bytes([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]]))
+        };
         Ok(vec![("maps", word(3)), ("maps drawn", word(7))])
     }
 }
 
 /// Appends the stages that draw a run of slots, `layers` at a time, and tells where they are in the list.
-fn push_stages(
-    stages: &mut Vec<MapStage>,
-    maps: &LightMaps,
-    layers: u32,
-    slots: Range<u32>,
-    level: u32,
-) -> Range<u32> {
+fn push_stages(stages: &mut Vec<MapStage>, maps: &LightMaps, layers: u32, slots: Range<u32>, level: u32) -> Range<u32> {
     let first = stages.len() as u32;
     let chunks = slots.start / layers..slots.end.div_ceil(layers);
     stages.extend(chunks.map(|chunk| {
@@ -312,6 +329,16 @@ mod tests {
         assert!(line.places().iter().all(|p| p.x == 0.0));
         let point = Shape::new(Vec2::ZERO, 4);
         assert_eq!((point.depth, point.samples_at(0), point.places()), (0, 1, vec![Vec2::ZERO]));
+    }
+
+    #[test]
+    fn a_tree_is_no_deeper_than_its_tolerance_lets_it_grow() {
+        let depth = |size, tolerance| {
+            let settings = AdaptiveSamplingSettings { tolerance, ..Default::default() };
+            Shape::of_settings(size, &settings).depth
+        };
+        assert_eq!([1.0, 0.25, 0.07, 0.0625, 0.0].map(|t| depth(Vec2::ONE, t)), [1, 2, 2, 3, 4]);
+        assert_eq!(depth(Vec2::X, 0.07), 4);
     }
 
     #[test]

@@ -67,7 +67,8 @@ fn grid_sides(pattern: Pattern, count: u32, size: Vec2, extended: [bool; 2]) -> 
         divisors.min_by(|a, b| stretch(n, *a).total_cmp(&stretch(n, *b))).unwrap_or([n, 1])
     };
     // Steps more than four times as long one way as the other are no grid of the light; a grid has two lines each way.
-    let fair = |n: u32| stretch(n, best(n)) <= 4f64.ln() && (pattern != Pattern::Regular || best(n)[0].min(best(n)[1]) > 1);
+    let fair =
+        |n: u32| stretch(n, best(n)) <= 4f64.ln() && (pattern != Pattern::Regular || best(n)[0].min(best(n)[1]) > 1);
     if fair(count) {
         return Ok(best(count));
     }
