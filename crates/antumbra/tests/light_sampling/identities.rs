@@ -9,13 +9,22 @@ const LIGHTS: [Vec2; 3] = [Vec2::new(0.9, 0.7), Vec2::new(1.1, 0.0), Vec2::new(0
 
 #[test]
 fn one_sample_with_one_lookup_is_a_hard_shadow() {
-    for spec in ["square", "fence:slats=9", "disk:segments=16", "spheres:segments=16"] {
+    // The plant has leaves that are cut out of a texture.
+    for spec in ["square", "fence:slats=9", "disk:segments=16", "spheres:segments=16", "plant:leaves=8"] {
         let renderer = seen(&builtin(spec));
         let hard = fresh(&renderer, "hard:map=256");
         let one = fresh(&renderer, "uniform-sampling:samples=1,pcf=1,map=256");
         assert!(hard.contains(&0.0) && hard.contains(&1.0), "{spec}: no shadow");
         assert_same(&one, &hard, spec);
     }
+}
+
+#[test]
+fn cut_out_leaves_are_the_same_in_an_array_and_one_after_the_other() {
+    let renderer = seen(&builtin("plant:leaves=8"));
+    let by = |way: &str| fresh(&renderer, &format!("uniform-sampling:map=128,samples=9,evaluation={way}"));
+    assert!(has_penumbra(&by("array")));
+    assert_same(&by("array"), &by("accumulate"), "plant");
 }
 
 #[test]

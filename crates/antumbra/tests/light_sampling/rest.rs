@@ -1,11 +1,12 @@
 //! What may be kept from frame to frame while casters rest.
 
-use crate::common::{camera, gpu, submit, technique};
+use crate::common::{camera, cuboid, gpu, submit, technique};
 use crate::{SIZE, assert_same, figure, fresh, hovering, picture, seen};
-use antumbra::scene::SceneRenderer;
+use antumbra::scene::{SceneRenderer, upload};
 use antumbra::{Recorder, Technique, View};
 use antumbra_scene::Camera;
 use glam::{Vec2, Vec3};
+use std::sync::Arc;
 
 /// A box over the ground, whose host says that no caster moves.
 fn resting() -> SceneRenderer {
@@ -96,5 +97,34 @@ fn fixed_samples_of_resting_casters_are_drawn_once() {
         assert!(frame(&renderer, "the light moves"), "{way}: no maps drawn as the light moves");
         renderer.frame.casters_rest = false;
         assert!(frame(&renderer, "casters move"), "{way}: no maps drawn as casters move");
+    }
+}
+
+#[test]
+fn a_used_instance_follows_the_light_s_shape_and_other_casters() {
+    let size = Vec2::new(0.9, 0.7);
+    for spec in [
+        "adaptive-sampling:map=64,depth=2",
+        "adaptive-sampling:map=64,depth=2,filter=pcf",
+        "uniform-sampling:map=64,samples=9",
+        "uniform-sampling:map=64,samples=9,pattern=regular,evaluation=accumulate",
+    ] {
+        let mut renderer = resting();
+        let mut kept = technique(spec);
+        for other in [size, Vec2::new(0.9, 0.0), Vec2::new(0.0, 0.7), Vec2::ZERO, size, Vec2::new(0.7, 0.9)] {
+            renderer.frame.light.size = other;
+            change(&mut renderer, &near(), Vec3::ZERO);
+            let (by_kept, by_new) = (picture(&renderer, &mut *kept), fresh(&renderer, spec));
+            assert_same(&by_kept, &by_new, &format!("{spec}, a light of {other} m"));
+        }
+        // As many triangles, at another place.
+        let mut moved = hovering(size);
+        moved.meshes[1] = cuboid([-0.3, 0.9, -0.3], [0.6, 1.2, 0.35]);
+        let before = picture(&renderer, &mut *kept);
+        renderer.frame.casters = Arc::new(upload(gpu(), &moved).unwrap_or_else(|e| panic!("{e}")));
+        change(&mut renderer, &near(), Vec3::ZERO);
+        let after = picture(&renderer, &mut *kept);
+        assert!(after != before, "{spec}: the moved box casts the same shadow");
+        assert_same(&after, &fresh(&renderer, spec), &format!("{spec}, other casters"));
     }
 }
