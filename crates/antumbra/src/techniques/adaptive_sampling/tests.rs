@@ -149,7 +149,7 @@ fn every_layer_is_drawn_by_one_stage_whatever_the_layers_a_pass_can_draw() {
         [Evaluate::Array, Evaluate::Accumulate].into_iter().flat_map(|e| [1, 2, 3, 6, 8, 32].map(|n| (e, n)))
     {
         for (size, maps) in [(Vec2::ONE, 4), (Vec2::ONE, 21), (Vec2::ONE, 100), (Vec2::X, 4), (Vec2::X, 17)] {
-            let settings = AdaptiveSamplingSettings { map: 16, maps, evaluation, ..Default::default() };
+            let settings = AdaptiveSamplingSettings { map: 16, maps, evaluation, tolerance: 0.0, ..Default::default() };
             let mut gpu = gpu().clone();
             gpu.capabilities.layers_per_pass = layers_per_pass;
             let refinement = Refinement::on(&gpu, Trial { size, settings, limit: 1, seed: 0 });
