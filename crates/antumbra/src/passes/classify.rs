@@ -30,15 +30,18 @@ impl PenumbraList {
         slot.as_ref().expect("just made")
     }
 
-    /// Writes the visibility of known pixels and lists the others.
+    /// Writes the visibility of known pixels and lists the others. What the light's centre sees nothing of may be lit
+    /// from its rim, through a gap that the centre does not see: techniques that look from other points too do not
+    /// `trust_dark`, and get such pixels listed. What is lit by the map surely is.
     pub fn record(
         &self,
         recorder: &mut Recorder,
         frame: &Frame,
         map: &DepthMap,
         pyramid: &DepthPyramid,
+        trust_dark: bool,
     ) -> Result<(), Error> {
-        let key = ShaderKey::new("passes::classify").with::<FrameUniform>();
+        let key = ShaderKey::new("passes::classify").feature("trust_dark", trust_dark).with::<FrameUniform>();
         let classify = recorder.gpu.compute_pipeline(&key, "classify_pixels")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
         recorder.encoder.clear_buffer(&self.buffer, 0, Some(16));

@@ -151,7 +151,6 @@ fn light_that_only_the_rim_of_the_light_sends_through_a_gap_is_seen() {
 }
 
 #[test]
-#[ignore = "pixels that the light's centre takes for dark are not looked at from other points"]
 fn light_through_a_gap_is_seen_by_cells_of_the_light() {
     let error = error_behind_a_gap("adaptive-sampling:map=256,tolerance=0,maps=289");
     assert!(error < 0.1, "at most {error}");

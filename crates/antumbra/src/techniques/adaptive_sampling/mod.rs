@@ -39,7 +39,7 @@ pub struct AdaptiveSampling {
     drawn: Option<Drawn>,
 }
 
-/// Tells lit and dark pixels from the others by one map of the light's centre.
+/// Tells lit pixels from the others by one map of the light's centre.
 #[derive(Default)]
 struct Penumbra {
     map: Option<DepthMap>,
@@ -53,7 +53,7 @@ impl Penumbra {
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, recorder.gpu, size);
         let list = PenumbraList::ensure(&mut self.list, recorder.gpu, frame.geometry.size);
         pyramid.record(recorder, map, frame.frustum.near)?;
-        list.record(recorder, frame, map, pyramid)?;
+        list.record(recorder, frame, map, pyramid, false)?;
         Ok(list)
     }
 

@@ -168,7 +168,8 @@ impl State {
     pub fn capacity(gpu: &Gpu, settings: &AdaptiveSamplingSettings, shape: Shape) -> u32 {
         let most = shape.samples_at(shape.depth).min(settings.maps);
         match settings.evaluation {
-            Evaluate::Array => most.min(LightMaps::most(gpu, settings.map)),
+            // The corners of the light are always drawn.
+            Evaluate::Array => most.min(LightMaps::most(gpu, settings.map).max(shape.samples_at(0))),
             Evaluate::Accumulate => most,
         }
     }

@@ -71,7 +71,7 @@ impl Technique for Pcss {
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
         pyramid.record(recorder, map, frame.frustum.near)?;
-        list.record(recorder, frame, map, pyramid)?;
+        list.record(recorder, frame, map, pyramid, true)?;
         let set = frame.bindings(bindings! {
             depth_map: &map.texture,
             pyramid_bounds: &pyramid.bounds,

@@ -54,6 +54,8 @@ pub struct UniformSampling {
     stages: Option<UniformArray<MapStage>>,
     /// What the maps were drawn for, if they still hold it.
     drawn: Option<Drawn>,
+    /// Maps that the last frame drew.
+    drawn_count: usize,
 }
 
 /// What depends on the light's size alone, and on how many maps there is room for.
@@ -116,7 +118,15 @@ impl Describe for UniformSampling {
     };
 
     fn make(_gpu: &Gpu, settings: UniformSamplingSettings) -> Result<Self, Error> {
-        Ok(UniformSampling { settings, plan: None, samples: None, maps: None, stages: None, drawn: None })
+        Ok(UniformSampling {
+            settings,
+            plan: None,
+            samples: None,
+            maps: None,
+            stages: None,
+            drawn: None,
+            drawn_count: 0,
+        })
     }
 }
 
@@ -147,6 +157,7 @@ impl Technique for UniformSampling {
             }
             plan.evaluation.record(recorder, frame, samples, maps, &plan.entries, part);
         }
+        self.drawn_count = if still_there { 0 } else { plan.places.len() };
         self.drawn = Some(now);
         Ok(())
     }
@@ -157,6 +168,6 @@ impl Technique for UniformSampling {
 
     fn figures<'a>(&'a self, _gpu: &'a Gpu) -> FiguresFuture<'a> {
         let maps = self.plan.as_ref().map_or(0, |p| p.places.len());
-        Box::pin(std::future::ready(Ok(vec![("maps", maps as f64)])))
+        Box::pin(std::future::ready(Ok(vec![("maps", maps as f64), ("maps drawn", self.drawn_count as f64)])))
     }
 }
