@@ -11,7 +11,7 @@ pub(crate) use draw::{MapSlot, MapStage};
 pub(crate) use evaluate::Entry;
 pub use evaluate::Evaluation;
 
-use crate::resource::storage_of;
+use crate::resource::{storage_bytes, storage_of};
 use crate::{Casters, Frame, Gpu, ShadowFrustum, gpu_struct};
 use antumbra_scene::RectLight;
 use glam::{DMat4, DVec4, Mat4, Vec2};
@@ -46,17 +46,19 @@ impl LightSamples {
         points: &[Vec2],
     ) -> &'a LightSamples {
         let key = (frame.light, frame.frustum, points.len());
-        if slot.as_ref().is_none_or(|s| s.made_for.2 != key.2) {
+        if slot.as_ref().is_none_or(|s| s.made_for != key) {
             let samples: Vec<LightSample> = points.iter().map(|p| sample(frame, *p)).collect();
-            *slot = Some(LightSamples { buffer: storage_of(gpu, "light samples", &samples), made_for: key });
+            let old = slot.take().filter(|s| s.made_for.2 == key.2).map(|s| s.buffer);
+            let buffer = match old {
+                Some(buffer) => {
+                    gpu.queue.write_buffer(&buffer, 0, &storage_bytes(&samples));
+                    buffer
+                }
+                None => storage_of(gpu, "light samples", &samples),
+            };
+            *slot = Some(LightSamples { buffer, made_for: key });
         }
-        let table = slot.as_mut().expect("just made");
-        if table.made_for != key {
-            let samples: Vec<LightSample> = points.iter().map(|p| sample(frame, *p)).collect();
-            gpu.queue.write_buffer(&table.buffer, 0, &crate::resource::storage_bytes(&samples));
-            table.made_for = key;
-        }
-        table
+        slot.as_ref().expect("just made")
     }
 }
 

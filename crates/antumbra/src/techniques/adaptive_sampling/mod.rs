@@ -215,7 +215,8 @@ impl AdaptiveSampling {
         if !(same_maps && same_state) {
             self.state = Some(State::new(gpu, settings, shape, (picture, frame.light.size), maps)?);
         }
-        LightSamples::ensure(&mut self.samples, gpu, frame, &shape.places());
+        let places = &self.state.as_ref().expect("just made").places;
+        LightSamples::ensure(&mut self.samples, gpu, frame, places);
         if settings.space == Space::Light {
             DepthMap::of_light(&mut self.light_view, recorder, frame, LIGHT_VIEW)?;
         }

@@ -146,6 +146,8 @@ pub(super) struct State {
     pub tiles: u32,
     pub picture: [u32; 2],
     pub light_size: Vec2,
+    /// Places of all samples on the light.
+    pub places: Vec<Vec2>,
     pub uniform: wgpu::Buffer,
     pub plans: UniformArray<PlanUniform>,
     pub stages: UniformArray<MapStage>,
@@ -236,6 +238,7 @@ impl State {
             tiles: uniform.tiles.x * uniform.tiles.y,
             picture,
             light_size,
+            places: shape.places(),
         })
     }
 
