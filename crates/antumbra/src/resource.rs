@@ -35,19 +35,20 @@ impl Texture {
         Texture { view: texture.create_view(&Default::default()), texture }
     }
 
-    /// A texture of `layers` layers without mip levels; its view is an array whatever their number.
+    /// A texture of `layers` layers and `mips` levels; its view is an array whatever their number.
     pub fn array(
         gpu: &Gpu,
         label: &str,
         size: [u32; 2],
         layers: u32,
+        mips: u32,
         format: wgpu::TextureFormat,
         usage: wgpu::TextureUsages,
     ) -> Texture {
         let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
             label: Some(label),
             size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: layers },
-            mip_level_count: 1,
+            mip_level_count: mips,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
             format,
@@ -75,6 +76,16 @@ impl Texture {
     /// A view of one mip level.
     pub fn mip(&self, level: u32) -> wgpu::TextureView {
         self.texture.create_view(&wgpu::TextureViewDescriptor {
+            base_mip_level: level,
+            mip_level_count: Some(1),
+            ..Default::default()
+        })
+    }
+
+    /// An array view of one mip level of all layers.
+    pub fn array_mip(&self, level: u32) -> wgpu::TextureView {
+        self.texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
             base_mip_level: level,
             mip_level_count: Some(1),
             ..Default::default()

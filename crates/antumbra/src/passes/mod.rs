@@ -7,4 +7,5 @@ pub mod depth_map;
 pub mod depth_pyramid;
 pub mod geometry_buffer;
 pub mod light_maps;
+pub mod patch_pyramid;
 pub mod picture;

@@ -3,6 +3,7 @@
 use crate::technique::{TechniqueInfo, entry};
 
 pub mod adaptive_sampling;
+pub mod backprojection;
 pub mod hard;
 pub mod pcf;
 pub mod pcss;
@@ -13,6 +14,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<hard::Hard>(),
     entry::<pcf::Pcf>(),
     entry::<pcss::Pcss>(),
+    entry::<backprojection::Backprojection>(),
     entry::<uniform_sampling::UniformSampling>(),
     entry::<adaptive_sampling::AdaptiveSampling>(),
 ];

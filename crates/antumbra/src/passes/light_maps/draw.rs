@@ -75,7 +75,7 @@ impl LightMaps {
         let group_count = capacity.div_ceil(layers_per_group);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let layers = group_count * layers_per_group;
-        let texture = Texture::array(gpu, "light maps", [size; 2], layers, wgpu::TextureFormat::Depth32Float, usage);
+        let texture = Texture::array(gpu, "light maps", [size; 2], layers, 1, wgpu::TextureFormat::Depth32Float, usage);
         let batch_count = casters.batches.len().max(1) as u32;
         let one = [3 * CLUSTER_TRIANGLES, 0, 0, 0];
         let empty = one.repeat((group_count * batch_count) as usize);

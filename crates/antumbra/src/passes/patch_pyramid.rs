@@ -1,0 +1,74 @@
+//! A pyramid of patches over the layers of a depth map: what lies below a node as one plane or as two surfaces.
+
+use crate::passes::depth_pyramid::PyramidUniform;
+use crate::recorder::{Recorder, Work, dispatch};
+use crate::resource::{Texture, uniform};
+use crate::shader::{HostStruct, ShaderKey};
+use crate::technique::Memory;
+use crate::{Error, Gpu, bindings};
+
+/// Levels over the layers of a depth map, from half its size down to one texel; see `shaders/patches.wesl`.
+pub struct PatchPyramid {
+    /// `Rgba32Uint` array; its level 0 is half as wide as the map, a layer for each layer of the map.
+    pub patches: Texture,
+    levels: Vec<wgpu::TextureView>,
+    uniform: wgpu::Buffer,
+}
+
+impl PatchPyramid {
+    /// A pyramid over `layers` maps of `size` texels a side.
+    pub fn new(gpu: &Gpu, size: u32, layers: u32) -> PatchPyramid {
+        let half = size.div_ceil(2).max(1);
+        let mips = 32 - half.leading_zeros();
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        let patches =
+            Texture::array(gpu, "patches", [half; 2], layers, mips, wgpu::TextureFormat::Rgba32Uint, usage);
+        PatchPyramid {
+            levels: (0..mips).map(|m| patches.array_mip(m)).collect(),
+            uniform: uniform(gpu, "patches", &PyramidUniform { map_near: 1.0 }),
+            patches,
+        }
+    }
+
+    /// Makes a pyramid in `slot` unless one for such maps is there.
+    pub fn ensure<'a>(slot: &'a mut Option<PatchPyramid>, gpu: &Gpu, size: u32, layers: u32) -> &'a PatchPyramid {
+        let half = size.div_ceil(2).max(1);
+        let fits = |p: &PatchPyramid| {
+            p.patches.texture.width() == half && p.patches.texture.depth_or_array_layers() == layers
+        };
+        if !slot.as_ref().is_some_and(fits) {
+            *slot = Some(PatchPyramid::new(gpu, size, layers));
+        }
+        slot.as_ref().expect("just made")
+    }
+
+    /// Reduces maps whose frustum begins at `map_near` metres.
+    pub fn record(&self, recorder: &mut Recorder, maps: &wgpu::TextureView, map_near: f32) -> Result<(), Error> {
+        recorder.gpu.queue.write_buffer(&self.uniform, 0, &PyramidUniform { map_near }.uniform_bytes());
+        let key = ShaderKey::new("passes::patch_pyramid").with::<PyramidUniform>();
+        let first = recorder.gpu.compute_pipeline(&key.clone().feature("first", true), "reduce")?;
+        let next = recorder.gpu.compute_pipeline(&key, "reduce")?;
+        let [half, layers] = [self.patches.texture.width(), self.patches.texture.depth_or_array_layers()];
+        recorder.compute_pass("patch pyramid", |gpu, pass| {
+            for (m, level) in self.levels.iter().enumerate() {
+                let pipeline = if m == 0 { &first } else { &next };
+                let set = bindings! {
+                    step: &self.uniform,
+                    source_maps: maps,
+                    source_patches: &self.levels[m.saturating_sub(1)],
+                    level_patches: level,
+                };
+                let size = (half >> m).max(1);
+                pass.set_pipeline(&pipeline.pipeline);
+                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, set), &[]);
+                dispatch(pass, pipeline, Work::Threads([size, size, layers]));
+            }
+        });
+        Ok(())
+    }
+
+    /// GPU memory by pass.
+    pub fn memory(&self) -> Memory {
+        Memory::new("patch pyramid", self.patches.bytes())
+    }
+}

@@ -1,0 +1,113 @@
+//! Layered back-projection: every patch of the map that rises above the receiver's plane is projected from the receiver
+//! to the light, and the light's points that it covers are taken from the light [Guennebaud 2006, 2007].
+
+use crate::frame::FrameUniform;
+use crate::passes::{
+    classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid,
+};
+use crate::pipeline::ComputePipeline;
+use crate::recorder::{Recorder, Work};
+use crate::resource::uniform;
+use crate::shader::ShaderKey;
+use crate::technique::{About, Describe, Memory, Technique};
+use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
+use std::sync::Arc;
+
+crate::settings! {
+    /// Settings of [`Backprojection`].
+    pub struct BackprojectionSettings {
+        /// Shadow map, texels a side.
+        map: u32 = 1024, Kind::Integer { min: 16, max: 16384 };
+        /// Surfaces behind each other that are kept for each texel.
+        layers: u32 = 1, Kind::Integer { min: 1, max: 4 };
+        /// Points of the light.
+        bits: u32 = 256, Kind::Integer { min: 64, max: 1024 };
+        /// Patches a side that the light is resolved into at most.
+        window: f32 = 32.0, Kind::Number { min: 1.0, max: 1024.0 };
+    }
+}
+
+gpu_struct! {
+    /// How finely is looked.
+    pub(crate) struct BackprojectionUniform {
+        layers: u32,
+        /// Smallest width of a patch on the light, as a part of the light's.
+        leaf: f32,
+       
+    }
+}
+
+/// Shadow of a rectangular light by patches that are projected back to it.
+pub struct Backprojection {
+    settings: BackprojectionSettings,
+    gather: Arc<ComputePipeline>,
+    uniform: wgpu::Buffer,
+    map: Option<DepthMap>,
+    pyramid: Option<DepthPyramid>,
+    patches: Option<PatchPyramid>,
+    list: Option<PenumbraList>,
+}
+
+impl Describe for Backprojection {
+    type Settings = BackprojectionSettings;
+    const ABOUT: About = About {
+        name: "backprojection",
+        title: "Layered back-projection",
+        source: "Guennebaud 2006, 2007",
+        summary: "x",
+    };
+
+    fn make(gpu: &Gpu, settings: BackprojectionSettings) -> Result<Self, Error> {
+        let key = ShaderKey::new("techniques::backprojection::gather")
+            .feature("bits64", settings.bits == 64)
+            .feature("bits128", settings.bits == 128)
+            .feature("bits256", settings.bits == 256)
+            .feature("bits512", settings.bits == 512)
+            .feature("bits1024", settings.bits == 1024)
+            .with::<FrameUniform>()
+            .with::<BackprojectionUniform>();
+        let value = BackprojectionUniform { layers: settings.layers, leaf: 1.0 / settings.window };
+        Ok(Backprojection {
+            gather: gpu.compute_pipeline(&key, "gather")?,
+            uniform: uniform(gpu, "backprojection", &value),
+            settings,
+            map: None,
+            pyramid: None,
+            patches: None,
+            list: None,
+        })
+    }
+}
+
+impl Technique for Backprojection {
+    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+        let gpu = recorder.gpu;
+        let map = DepthMap::of_light(&mut self.map, recorder, frame, self.settings.map)?;
+        let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
+        let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
+        pyramid.record(recorder, map, frame.frustum.near)?;
+        list.record(recorder, frame, map, pyramid, false)?;
+        let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
+        let view = map.texture.texture.create_view(&wgpu::TextureViewDescriptor {
+            dimension: Some(wgpu::TextureViewDimension::D2Array),
+            ..Default::default()
+        });
+        patches.record(recorder, &view, frame.frustum.near)?;
+        let set = frame.bindings(bindings! {
+            depth_map: &map.texture,
+            penumbra_pixels: &list.buffer,
+            backprojection: &self.uniform,
+            patches: &patches.patches,
+        });
+        recorder.compute("back-projection", &self.gather, &set, Work::Indirect(&list.buffer, 0));
+        Ok(())
+    }
+
+    fn memory(&self) -> Vec<Memory> {
+        let map = self.map.iter().flat_map(DepthMap::memory);
+        map.chain(self.pyramid.iter().map(DepthPyramid::memory))
+            .chain(self.patches.iter().map(PatchPyramid::memory))
+            .chain(self.list.iter().map(PenumbraList::memory))
+            .collect()
+    }
+}
