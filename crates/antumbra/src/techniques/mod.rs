@@ -5,6 +5,7 @@ use crate::technique::{TechniqueInfo, entry};
 pub mod adaptive_sampling;
 pub mod backprojection;
 pub mod hard;
+pub mod packet;
 pub mod pcf;
 pub mod pcss;
 pub mod uniform_sampling;
@@ -15,6 +16,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<pcf::Pcf>(),
     entry::<pcss::Pcss>(),
     entry::<backprojection::Backprojection>(),
+    entry::<packet::Packet>(),
     entry::<uniform_sampling::UniformSampling>(),
     entry::<adaptive_sampling::AdaptiveSampling>(),
 ];

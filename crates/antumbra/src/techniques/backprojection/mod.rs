@@ -58,7 +58,14 @@ impl Describe for Backprojection {
     };
 
     fn make(gpu: &Gpu, settings: BackprojectionSettings) -> Result<Self, Error> {
-        let key = ShaderKey::new("techniques::backprojection::gather")
+        Backprojection::with_gather(gpu, settings, "techniques::backprojection::gather")
+    }
+}
+
+impl Backprojection {
+    /// With the shader that gathers the patches.
+    pub(crate) fn with_gather(gpu: &Gpu, settings: BackprojectionSettings, gather: &'static str) -> Result<Self, Error> {
+        let key = ShaderKey::new(gather)
             .feature("bits64", settings.bits == 64)
             .feature("bits128", settings.bits == 128)
             .feature("bits256", settings.bits == 256)
