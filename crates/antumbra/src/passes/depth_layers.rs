@@ -1,34 +1,59 @@
-//! Depth-peeled maps: the nearest few casters of each texel, seen from the light's centre.
+//! The nearest few casters of each texel, seen from the light's centre, in one pass over the casters.
 
 use crate::casters::Casters;
-use crate::passes::depth_map::FrustumCasters;
+use crate::passes::depth_map::DepthMap;
 use crate::recorder::Recorder;
-use crate::resource::Texture;
+use crate::resource::{Texture, storage_buffer, uniform};
 use crate::technique::Memory;
-use crate::{Error, Frame, Gpu};
+use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 
-/// Square maps of `near / z` as in [`DepthMap`](crate::passes::depth_map::DepthMap), one behind the other: layer `i`
-/// holds the i-th nearest surface of each texel, front or back, and 0 where there are no more. Depths descend strictly;
-/// surfaces of the same depth to the last bit are one.
+gpu_struct! {
+    /// Where a texel's depths are in the buffer, layer after layer.
+    pub(crate) struct LayerShape {
+        /// Texels from one row to the next.
+        row: u32,
+        /// Texels from one layer to the next.
+        layer: u32,
+        /// Layers.
+        count: u32,
+    }
+}
+
+/// Square maps of `near / z` as in [`DepthMap`], one behind the other: layer `i` holds the i-th nearest surface of each
+/// texel, front or back, and 0 where there are no more. Depths descend strictly; surfaces of the same depth to the last
+/// bit are one.
 pub struct DepthLayers {
-    /// `Depth32Float`, `size` x `size` x `layers`; its view is an array even of a single layer.
+    /// `R32Float`, `size` x `size` x `layers`; its view is an array even of a single layer.
     pub texture: Texture,
-    size: u32,
-    /// A view of each layer.
-    layers: Vec<wgpu::TextureView>,
-    seen: FrustumCasters,
+    /// The first layer as a depth map, drawn by the way.
+    pub nearest: DepthMap,
+    depths: wgpu::Buffer,
+    shape: LayerShape,
+    shape_buffer: wgpu::Buffer,
 }
 
 impl DepthLayers {
     /// Empty maps of `size` texels a side; `layers` is 1 or more.
     pub fn new(gpu: &Gpu, size: u32, layers: u32, casters: &Casters) -> Result<DepthLayers, Error> {
-        gpu.check_size("shadow map", size, size)?;
-        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC;
-        let texture = Texture::array(gpu, "depth layers", [size; 2], layers, wgpu::TextureFormat::Depth32Float, usage);
-        let layers = (0..layers).map(|i| texture.layers(i, 1)).collect();
-        Ok(DepthLayers { texture, size, layers, seen: FrustumCasters::new(gpu, casters) })
+        let nearest = DepthMap::new(gpu, size, casters)?;
+        let row = size.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / 4);
+        let shape = LayerShape { row, layer: row * size, count: layers };
+        let bytes = 4 * u64::from(row) * u64::from(size) * u64::from(layers);
+        let limits = gpu.device.limits();
+        let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
+        if bytes > most {
+            let max = (most / (4 * u64::from(layers))).isqrt() as u32;
+            return Err(Error::Size { what: "depth layers", width: size, height: size, max });
+        }
+        let usage =
+            wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+        Ok(DepthLayers {
+            texture: Texture::array(gpu, "depth layers", [size; 2], layers, wgpu::TextureFormat::R32Float, usage),
+            nearest,
+            depths: storage_buffer(gpu, "nearest depths", bytes),
+            shape,
+            shape_buffer: uniform(gpu, "layer shape", &shape),
+        })
     }
 
     /// Makes maps in `slot` unless `layers` of this size for these casters are there, and draws what the light's centre
@@ -41,8 +66,7 @@ impl DepthLayers {
         layers: u32,
     ) -> Result<&'a DepthLayers, Error> {
         let casters = &frame.casters;
-        let fits = |m: &DepthLayers| m.size == size && m.layers.len() as u32 == layers && m.seen.fits(casters);
-        if !slot.as_ref().is_some_and(fits) {
+        if !slot.as_ref().is_some_and(|m| m.nearest.fits(size, casters) && m.shape.count == layers) {
             *slot = None; // Frees the old maps before the new ones are made.
             *slot = Some(DepthLayers::new(recorder.gpu, size, layers, casters)?);
         }
@@ -52,17 +76,23 @@ impl DepthLayers {
     }
 
     fn record(&self, recorder: &mut Recorder, frame: &Frame) -> Result<(), Error> {
-        let casters = &frame.casters;
-        self.seen.cull(recorder, casters, frame.map_clip_from_world())?;
-        for (i, layer) in self.layers.iter().enumerate() {
-            let nearer = i.checked_sub(1).map(|before| &self.layers[before]);
-            self.seen.draw(recorder, "depth layers", casters, layer, nearer)?;
-        }
+        recorder.encoder.clear_buffer(&self.depths, 0, None);
+        let set = bindings! { nearest_depths: &self.depths, layer_shape: &self.shape_buffer };
+        self.nearest.draw(recorder, "depth layers", &frame.casters, frame.map_clip_from_world(), Some(set))?;
+        let size = self.texture.texture.size();
+        let layout = wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(4 * self.shape.row),
+            rows_per_image: Some(size.height),
+        };
+        let source = wgpu::TexelCopyBufferInfo { buffer: &self.depths, layout };
+        recorder.encoder.copy_buffer_to_texture(source, self.texture.texture.as_image_copy(), size);
         Ok(())
     }
 
     /// GPU memory by pass.
     pub fn memory(&self) -> [Memory; 2] {
-        [self.seen.memory(), Memory::new("depth layers", self.texture.bytes())]
+        let [culling, map] = self.nearest.memory();
+        [culling, Memory::new("depth layers", self.depths.size() + self.texture.bytes() + map.bytes)]
     }
 }

@@ -2,73 +2,14 @@
 
 use crate::casters::{BatchLayout, Casters};
 use crate::passes::culling::{Culling, MapView};
-use crate::pipeline::{Bindable, RenderTarget};
+use crate::passes::depth_layers::LayerShape;
+use crate::pipeline::{Binding, RenderTarget};
 use crate::recorder::{Recorder, depth_target};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
 use crate::technique::Memory;
 use crate::{Error, Frame, Gpu, bindings};
 use glam::Mat4;
-
-/// The casters that one frustum holds: culled once, drawn into one depth texture or more.
-pub(crate) struct FrustumCasters {
-    view: wgpu::Buffer,
-    culling: Culling,
-}
-
-impl FrustumCasters {
-    pub fn new(gpu: &Gpu, casters: &Casters) -> FrustumCasters {
-        FrustumCasters {
-            view: uniform(gpu, "map view", &MapView::new(Mat4::IDENTITY)),
-            culling: Culling::new(gpu, casters),
-        }
-    }
-
-    /// True if made for casters of this size.
-    pub fn fits(&self, casters: &Casters) -> bool {
-        self.culling.fits(casters)
-    }
-
-    /// Finds the casters that `clip_from_world` holds.
-    pub fn cull(&self, recorder: &mut Recorder, casters: &Casters, clip_from_world: Mat4) -> Result<(), Error> {
-        let view = MapView::new(clip_from_world);
-        recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
-        self.culling.record(recorder, "cluster culling", casters, &self.view)
-    }
-
-    /// Draws what was found last into a depth texture; behind what is in `nearer`, if given.
-    pub fn draw(
-        &self,
-        recorder: &mut Recorder,
-        label: &str,
-        casters: &Casters,
-        target: &wgpu::TextureView,
-        nearer: Option<&wgpu::TextureView>,
-    ) -> Result<(), Error> {
-        let format = RenderTarget { colors: Vec::new(), depth: Some(wgpu::CompareFunction::Greater), layers: 1 };
-        let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>();
-        let key = key.feature("peel", nearer.is_some());
-        let opaque = recorder.gpu.render_pipeline(&key, &format)?;
-        let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &format)?;
-        let mut set = bindings! { map_view: &self.view, visible: &self.culling.visible }.to_vec();
-        set.extend(nearer.map(|view| ("nearer_layer", view.resource())));
-        recorder.render_pass(label, &[], Some(depth_target(target)), |gpu, pass| {
-            for (i, batch) in casters.batches.iter().enumerate() {
-                let pipeline = if batch.masked { &masked } else { &opaque };
-                pass.set_pipeline(&pipeline.pipeline);
-                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, &set), &[]);
-                pass.set_bind_group(1, &pipeline.bind_group(gpu, 1, &batch.bindings(casters)), &[]);
-                pass.draw_indirect(&self.culling.draws, Culling::draw_offset(i));
-            }
-        });
-        Ok(())
-    }
-
-    /// GPU memory of the culling.
-    pub fn memory(&self) -> Memory {
-        Memory::new("cluster culling", self.culling.bytes())
-    }
-}
 
 /// A square map of `near / z`, z being the linear distance along the light's normal and `near` that of the frustum
 /// [Williams 1978]. The reversed depth with its far plane at infinity is the inverse distance itself: 0 is infinitely
@@ -77,7 +18,8 @@ pub struct DepthMap {
     /// `Depth32Float`, `size` x `size`.
     pub texture: Texture,
     size: u32,
-    seen: FrustumCasters,
+    view: wgpu::Buffer,
+    culling: Culling,
 }
 
 impl DepthMap {
@@ -90,7 +32,8 @@ impl DepthMap {
         Ok(DepthMap {
             texture: Texture::new(gpu, "depth map", [size; 2], 1, wgpu::TextureFormat::Depth32Float, usage),
             size,
-            seen: FrustumCasters::new(gpu, casters),
+            view: uniform(gpu, "map view", &MapView::new(Mat4::IDENTITY)),
+            culling: Culling::new(gpu, casters),
         })
     }
 
@@ -101,10 +44,15 @@ impl DepthMap {
         size: u32,
         casters: &Casters,
     ) -> Result<&'a DepthMap, Error> {
-        if !slot.as_ref().is_some_and(|m| m.size == size && m.seen.fits(casters)) {
+        if !slot.as_ref().is_some_and(|m| m.fits(size, casters)) {
             *slot = Some(DepthMap::new(gpu, size, casters)?);
         }
         Ok(slot.as_ref().expect("just made"))
+    }
+
+    /// True if it is of this size for these casters.
+    pub fn fits(&self, size: u32, casters: &Casters) -> bool {
+        self.size == size && self.culling.fits(casters)
     }
 
     /// Makes a map of `size` texels a side in `slot` if need be and draws what the light's centre sees.
@@ -121,17 +69,47 @@ impl DepthMap {
 
     /// Draws the casters that `clip_from_world` holds.
     pub fn record(&self, recorder: &mut Recorder, casters: &Casters, clip_from_world: Mat4) -> Result<(), Error> {
-        self.seen.cull(recorder, casters, clip_from_world)?;
-        self.seen.draw(recorder, "depth map", casters, &self.texture.view, None)
+        self.draw(recorder, "depth map", casters, clip_from_world, None)
+    }
+
+    /// The same, with every surface of a texel handed to the buffers of `layers`.
+    pub(crate) fn draw(
+        &self,
+        recorder: &mut Recorder,
+        label: &str,
+        casters: &Casters,
+        clip_from_world: Mat4,
+        layers: Option<&[Binding]>,
+    ) -> Result<(), Error> {
+        let view = MapView::new(clip_from_world);
+        recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
+        self.culling.record(recorder, "cluster culling", casters, &self.view)?;
+        let target = RenderTarget { colors: Vec::new(), depth: Some(wgpu::CompareFunction::Greater), layers: 1 };
+        let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>().with::<LayerShape>();
+        let key = key.feature("layers", layers.is_some());
+        let opaque = recorder.gpu.render_pipeline(&key, &target)?;
+        let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
+        let set = bindings! { map_view: &self.view, visible: &self.culling.visible };
+        let set = [set, layers.unwrap_or_default()].concat();
+        recorder.render_pass(label, &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
+            for (i, batch) in casters.batches.iter().enumerate() {
+                let pipeline = if batch.masked { &masked } else { &opaque };
+                pass.set_pipeline(&pipeline.pipeline);
+                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, &set), &[]);
+                pass.set_bind_group(1, &pipeline.bind_group(gpu, 1, &batch.bindings(casters)), &[]);
+                pass.draw_indirect(&self.culling.draws, Culling::draw_offset(i));
+            }
+        });
+        Ok(())
     }
 
     /// What was culled.
     pub fn culling(&self) -> &Culling {
-        &self.seen.culling
+        &self.culling
     }
 
     /// GPU memory by pass.
     pub fn memory(&self) -> [Memory; 2] {
-        [self.seen.memory(), Memory::new("depth map", self.texture.bytes())]
+        [Memory::new("cluster culling", self.culling.bytes()), Memory::new("depth map", self.texture.bytes())]
     }
 }
