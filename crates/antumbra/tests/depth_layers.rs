@@ -2,6 +2,7 @@
 
 mod common;
 
+use antumbra::Error;
 use antumbra::passes::{depth_layers::DepthLayers, depth_map::DepthMap};
 use antumbra::resource::read_layer;
 use antumbra::scene::SceneRenderer;
@@ -25,15 +26,13 @@ fn layers(renderer: &SceneRenderer, size: u32, count: u32) -> Vec<Vec<f32>> {
 
 fn drawn_layers(renderer: &SceneRenderer, size: u32, count: u32) -> DepthLayers {
     let mut slot = None;
-    common::submit(|recorder| {
-        // Twice, as what the frame before has left must not be seen.
-        for _ in 0..2 {
-            DepthLayers::of_light(&mut slot, recorder, &renderer.frame, size, count)?;
-        }
-        Ok(())
-    })
-    .expect("draws");
+    draw(&mut slot, renderer, size, count);
     slot.expect("made")
+}
+
+fn draw(slot: &mut Option<DepthLayers>, renderer: &SceneRenderer, size: u32, count: u32) {
+    common::submit(|recorder| DepthLayers::of_light(slot, recorder, &renderer.frame, size, count).map(|_| ()))
+        .expect("draws");
 }
 
 /// What of a picture differs in its bits.
@@ -206,6 +205,24 @@ fn both_sides_of_a_box_are_layers() {
 }
 
 #[test]
+fn nothing_is_left_of_the_frame_before() {
+    let [low, high] = [0.5, 1.5].map(|y| {
+        let quads = vec![quad([0.1, y, 0.0], [0.6; 2]), quad([-0.1, y + 0.2, 0.3], [0.5; 2])];
+        drawn(&casting(quads), [16, 16])
+    });
+    let mut slot = None;
+    draw(&mut slot, &high, SIZE, 2);
+    let first = slot.as_ref().expect("made").texture.texture.clone();
+    draw(&mut slot, &low, SIZE, 2);
+    let texture = slot.expect("made").texture.texture;
+    assert_eq!(texture, first, "the maps are drawn into again");
+    for (i, fresh) in layers(&low, SIZE, 2).iter().enumerate() {
+        let wrong = differing(&depths(&texture, i as u32), fresh);
+        assert!(filled(fresh) > 500 && wrong == 0, "layer {i}: {wrong} texels differ from maps that are drawn first");
+    }
+}
+
+#[test]
 fn maps_are_kept_while_size_number_and_casters_are_the_same() {
     let (few, more) = (drawn(&builtin("fence:slats=9"), [16, 16]), drawn(&builtin("layers"), [16, 16]));
     let mut slot = None;
@@ -227,5 +244,13 @@ fn maps_are_kept_while_size_number_and_casters_are_the_same() {
         assert_ne!(next, last, "{size} texels, {count} layers");
         last = next;
     }
-    assert!(texture(&few, 1 << 20, 2).is_err(), "a map that no device holds");
+    assert!(matches!(texture(&few, 1 << 20, 2), Err(Error::Size { .. })), "a map that no device holds");
+    let (largest, binding) =
+        (gpu().capabilities.max_texture_size, gpu().device.limits().max_storage_buffer_binding_size);
+    if 16 * u64::from(largest).pow(2) > binding {
+        match texture(&few, largest, 4) {
+            Err(Error::Size { what: "depth layers", max, .. }) => assert!(max >= 1024 && max < largest, "{max}"),
+            other => panic!("4 maps of {largest} texels a side: {other:?}"),
+        }
+    }
 }

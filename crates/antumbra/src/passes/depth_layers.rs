@@ -1,4 +1,20 @@
 //! The nearest few casters of each texel, seen from the light's centre, in one pass over the casters.
+//!
+//! Each fragment puts its depth in its place among the texel's nearest by a chain of atomic maxima: the multi-depth test
+//! of [Liu et al. 2010]. Peeling, a pass over the casters for each layer, gives the same bits. On llvmpipe, 2 cores, the
+//! one pass takes this part of peeling's time, clearing and copying included (medians of 5 frames):
+//!
+//! | scene (triangles) | 1024 texels, 2 layers | 4 layers | 2048 texels, 2 layers | 4 layers |
+//! |---|---|---|---|---|
+//! | fence (5 thousand) | 0.84 | 0.56 | 1.16 | 0.74 |
+//! | layers (8 thousand) | 0.94 | 0.69 | 1.95 | 1.08 |
+//! | plant (10 thousand) | 0.67 | 0.44 | 0.91 | 0.55 |
+//! | Stanford bunny (69 thousand) | 0.77 | 0.37 | 0.86 | 0.47 |
+//! | bumpy (476 thousand) | 0.51 | 0.28 | 0.61 | 0.31 |
+//!
+//! Peeling wins where few triangles cover many texels, the one pass wherever triangles are many or layers are more than
+//! two. Reading the buffer instead of a texture made from it would save a twentieth. The price is memory: 2k + 1 maps for
+//! k layers where peeling has k.
 
 use crate::casters::Casters;
 use crate::passes::depth_map::DepthMap;
@@ -20,8 +36,9 @@ gpu_struct! {
 }
 
 /// Square maps of `near / z` as in [`DepthMap`], one behind the other: layer `i` holds the i-th nearest surface of each
-/// texel, front or back, and 0 where there are no more. Depths descend strictly; surfaces of the same depth to the last
-/// bit are one.
+/// texel, front or back, and 0 where there are no more. Depths descend strictly: surfaces of the same depth to the last
+/// bit are one. Coinciding surfaces that are not of the same triangles may differ in the last bits, by up to some 4e-7 of
+/// the depth, and are then two.
 pub struct DepthLayers {
     /// `R32Float`, `size` x `size` x `layers`; its view is an array even of a single layer.
     pub texture: Texture,
@@ -35,7 +52,7 @@ pub struct DepthLayers {
 impl DepthLayers {
     /// Empty maps of `size` texels a side; `layers` is 1 or more.
     pub fn new(gpu: &Gpu, size: u32, layers: u32, casters: &Casters) -> Result<DepthLayers, Error> {
-        let nearest = DepthMap::new(gpu, size, casters)?;
+        gpu.check_size("shadow map", size, size)?;
         let row = size.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / 4);
         let shape = LayerShape { row, layer: row * size, count: layers };
         let bytes = 4 * u64::from(row) * u64::from(size) * u64::from(layers);
@@ -49,7 +66,7 @@ impl DepthLayers {
             wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
         Ok(DepthLayers {
             texture: Texture::array(gpu, "depth layers", [size; 2], layers, wgpu::TextureFormat::R32Float, usage),
-            nearest,
+            nearest: DepthMap::new(gpu, size, casters)?,
             depths: storage_buffer(gpu, "nearest depths", bytes),
             shape,
             shape_buffer: uniform(gpu, "layer shape", &shape),
