@@ -2,7 +2,8 @@
 
 use crate::casters::{BatchLayout, Casters};
 use crate::passes::culling::{Culling, MapView};
-use crate::pipeline::RenderTarget;
+use crate::passes::depth_layers::LayerShape;
+use crate::pipeline::{Binding, RenderTarget};
 use crate::recorder::{Recorder, depth_target};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
@@ -43,10 +44,15 @@ impl DepthMap {
         size: u32,
         casters: &Casters,
     ) -> Result<&'a DepthMap, Error> {
-        if !slot.as_ref().is_some_and(|m| m.size == size && m.culling.fits(casters)) {
+        if !slot.as_ref().is_some_and(|m| m.fits(size, casters)) {
             *slot = Some(DepthMap::new(gpu, size, casters)?);
         }
         Ok(slot.as_ref().expect("just made"))
+    }
+
+    /// True if it is of this size for these casters.
+    pub fn fits(&self, size: u32, casters: &Casters) -> bool {
+        self.size == size && self.culling.fits(casters)
     }
 
     /// Makes a map of `size` texels a side in `slot` if need be and draws what the light's centre sees.
@@ -63,19 +69,33 @@ impl DepthMap {
 
     /// Draws the casters that `clip_from_world` holds.
     pub fn record(&self, recorder: &mut Recorder, casters: &Casters, clip_from_world: Mat4) -> Result<(), Error> {
+        self.draw(recorder, "depth map", casters, clip_from_world, None)
+    }
+
+    /// The same, with every surface of a texel handed to the buffers of `layers`.
+    pub(crate) fn draw(
+        &self,
+        recorder: &mut Recorder,
+        label: &str,
+        casters: &Casters,
+        clip_from_world: Mat4,
+        layers: Option<&[Binding]>,
+    ) -> Result<(), Error> {
         let view = MapView::new(clip_from_world);
         recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
         self.culling.record(recorder, "cluster culling", casters, &self.view)?;
         let target = RenderTarget { colors: Vec::new(), depth: Some(wgpu::CompareFunction::Greater), layers: 1 };
-        let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>();
+        let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>().with::<LayerShape>();
+        let key = key.feature("layers", layers.is_some());
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
         let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
-        recorder.render_pass("depth map", &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
+        let set = bindings! { map_view: &self.view, visible: &self.culling.visible };
+        let set = [set, layers.unwrap_or_default()].concat();
+        recorder.render_pass(label, &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
             for (i, batch) in casters.batches.iter().enumerate() {
                 let pipeline = if batch.masked { &masked } else { &opaque };
                 pass.set_pipeline(&pipeline.pipeline);
-                let set = bindings! { map_view: &self.view, visible: &self.culling.visible };
-                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, set), &[]);
+                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, &set), &[]);
                 pass.set_bind_group(1, &pipeline.bind_group(gpu, 1, &batch.bindings(casters)), &[]);
                 pass.draw_indirect(&self.culling.draws, Culling::draw_offset(i));
             }

@@ -3,6 +3,7 @@
 pub mod classify;
 pub mod cluster_bounds;
 pub mod culling;
+pub mod depth_layers;
 pub mod depth_map;
 pub mod depth_pyramid;
 pub mod geometry_buffer;
