@@ -65,7 +65,7 @@ impl DepthLayers {
         let usage =
             wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
         Ok(DepthLayers {
-            texture: Texture::array(gpu, "depth layers", [size; 2], layers, wgpu::TextureFormat::R32Float, usage),
+            texture: Texture::array(gpu, "depth layers", [size; 2], layers, 1, wgpu::TextureFormat::R32Float, usage),
             nearest: DepthMap::new(gpu, size, casters)?,
             depths: storage_buffer(gpu, "nearest depths", bytes),
             shape,

@@ -3,7 +3,7 @@
 
 use crate::frame::FrameUniform;
 use crate::passes::{
-    classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid,
+    classify::PenumbraList, depth_layers::DepthLayers, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid,
 };
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
@@ -42,7 +42,7 @@ pub struct Backprojection {
     settings: BackprojectionSettings,
     gather: Arc<ComputePipeline>,
     uniform: wgpu::Buffer,
-    map: Option<DepthMap>,
+    map: Option<DepthLayers>,
     pyramid: Option<DepthPyramid>,
     patches: Option<PatchPyramid>,
     list: Option<PenumbraList>,
@@ -89,17 +89,14 @@ impl Backprojection {
 impl Technique for Backprojection {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         let gpu = recorder.gpu;
-        let map = DepthMap::of_light(&mut self.map, recorder, frame, self.settings.map)?;
+        let maps = DepthLayers::of_light(&mut self.map, recorder, frame, self.settings.map, self.settings.layers)?;
+        let map = &maps.nearest;
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
         pyramid.record(recorder, map, frame.frustum.near)?;
         list.record(recorder, frame, map, pyramid, false)?;
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
-        let view = map.texture.texture.create_view(&wgpu::TextureViewDescriptor {
-            dimension: Some(wgpu::TextureViewDimension::D2Array),
-            ..Default::default()
-        });
-        patches.record(recorder, &view, frame.frustum.near)?;
+        patches.record(recorder, &maps.texture.view, frame.frustum.near)?;
         let set = frame.bindings(bindings! {
             depth_map: &map.texture,
             penumbra_pixels: &list.buffer,
@@ -111,7 +108,7 @@ impl Technique for Backprojection {
     }
 
     fn memory(&self) -> Vec<Memory> {
-        let map = self.map.iter().flat_map(DepthMap::memory);
+        let map = self.map.iter().flat_map(DepthLayers::memory);
         map.chain(self.pyramid.iter().map(DepthPyramid::memory))
             .chain(self.patches.iter().map(PatchPyramid::memory))
             .chain(self.list.iter().map(PenumbraList::memory))
