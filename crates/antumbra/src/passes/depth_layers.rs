@@ -19,7 +19,8 @@
 
 use crate::casters::Casters;
 use crate::passes::depth_map::DepthMap;
-use crate::recorder::Recorder;
+use crate::recorder::{Recorder, Work};
+use crate::shader::{HostStruct, ShaderKey};
 use crate::resource::{Texture, storage_buffer, uniform};
 use crate::technique::Memory;
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
@@ -33,6 +34,7 @@ gpu_struct! {
         layer: u32,
         /// Layers.
         count: u32,
+        gap: f32,
     }
 }
 
@@ -55,7 +57,9 @@ impl DepthLayers {
     pub fn new(gpu: &Gpu, size: u32, layers: u32, casters: &Casters) -> Result<DepthLayers, Error> {
         gpu.check_size("shadow map", size, size)?;
         let row = size.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / 4);
-        let shape = LayerShape { row, layer: row * size, count: layers };
+        let kept = layers;
+        let layers = std::env::var("COLLECT").map_or(layers, |v| v.parse().unwrap());
+        let shape = LayerShape { row, layer: row * size, count: layers, gap: 0.0 };
         let bytes = 4 * u64::from(row) * u64::from(size) * u64::from(layers);
         let limits = gpu.device.limits();
         let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
@@ -66,7 +70,7 @@ impl DepthLayers {
         let usage =
             wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
         Ok(DepthLayers {
-            texture: Texture::array(gpu, "depth layers", [size; 2], layers, 1, wgpu::TextureFormat::R32Float, usage),
+            texture: Texture::array(gpu, "depth layers", [size; 2], kept, 1, wgpu::TextureFormat::R32Float, usage),
             nearest: DepthMap::new(gpu, size, casters)?,
             depths: storage_buffer(gpu, "nearest depths", bytes),
             shape,
@@ -84,7 +88,7 @@ impl DepthLayers {
         layers: u32,
     ) -> Result<&'a DepthLayers, Error> {
         let casters = &frame.casters;
-        if !slot.as_ref().is_some_and(|m| m.nearest.fits(size, casters) && m.shape.count == layers) {
+        if !slot.as_ref().is_some_and(|m| m.nearest.fits(size, casters) && m.texture.texture.depth_or_array_layers() == layers) {
             *slot = None; // Frees the old maps before the new ones are made.
             *slot = Some(DepthLayers::new(recorder.gpu, size, layers, casters)?);
         }
@@ -98,6 +102,19 @@ impl DepthLayers {
         let set = bindings! { nearest_depths: &self.depths, layer_shape: &self.shape_buffer };
         self.nearest.draw(recorder, "depth layers", &frame.casters, frame.map_clip_from_world(), Some(set))?;
         let size = self.texture.texture.size();
+        let kappa: f32 = std::env::var("KAPPA").map_or(0., |v| v.parse().unwrap());
+        if kappa > 0. {
+            let texel = frame.frustum.tan_half * 2.0 / size.width as f32;
+            let per = texel / (0.5 * frame.light.size.max(glam::Vec2::splat(1e-6)));
+            let gap = kappa * per.min_element() * frame.frustum.near;
+            let v = LayerShape { gap, ..self.shape };
+            recorder.gpu.queue.write_buffer(&self.shape_buffer, 0, &v.uniform_bytes());
+            let key = ShaderKey::new("passes::depth_layers").with::<LayerShape>();
+            let thin = recorder.gpu.compute_pipeline(&key, "thin")?;
+            let set = bindings! { nearest_depths: &self.depths, layer_shape: &self.shape_buffer };
+            let n = (self.shape.layer).div_ceil(64);
+            recorder.compute("thin", &thin, set, Work::Groups([n.min(65535), n.div_ceil(65535), 1]));
+        }
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
             bytes_per_row: Some(4 * self.shape.row),
