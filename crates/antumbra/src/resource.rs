@@ -208,23 +208,27 @@ pub async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Er
 
 /// Reads the first mip level of the first layer; rows tightly packed.
 pub async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, Error> {
-    read_layer(gpu, texture, 0).await
+    read_first_layers(gpu, texture, 1).await
 }
 
-/// Reads the first mip level of one layer; rows tightly packed.
-pub async fn read_layer(gpu: &Gpu, texture: &wgpu::Texture, layer: u32) -> Result<Vec<u8>, Error> {
+/// Reads the first mip level of all layers, one after the other; rows tightly packed.
+pub async fn read_layers(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, Error> {
+    read_first_layers(gpu, texture, texture.depth_or_array_layers()).await
+}
+
+async fn read_first_layers(gpu: &Gpu, texture: &wgpu::Texture, layers: u32) -> Result<Vec<u8>, Error> {
     let texel = texture.format().block_copy_size(None).expect("a colour format");
     let row = texture.width() * texel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let staging = staging(gpu, u64::from(padded) * u64::from(texture.height()));
+    let staging = staging(gpu, u64::from(padded) * u64::from(texture.height()) * u64::from(layers));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
-        wgpu::TexelCopyTextureInfo { origin: wgpu::Origin3d { x: 0, y: 0, z: layer }, ..texture.as_image_copy() },
+        texture.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
             buffer: &staging,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: None },
+            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: Some(texture.height()) },
         },
-        wgpu::Extent3d { width: texture.width(), height: texture.height(), depth_or_array_layers: 1 },
+        wgpu::Extent3d { width: texture.width(), height: texture.height(), depth_or_array_layers: layers },
     );
     gpu.queue.submit([encoder.finish()]);
     let bytes = map(gpu, &staging).await?;

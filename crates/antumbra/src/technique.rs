@@ -55,8 +55,8 @@ pub struct TechniqueInfo {
     pub summary: &'static str,
     /// Its settings.
     pub settings: &'static [Setting],
-    /// Its defaults.
-    pub defaults: fn() -> Value,
+    /// Its defaults where these settings are given: a preset among them changes others.
+    pub defaults: fn(&Map<String, Value>) -> Value,
     /// Makes one from all its settings.
     pub make: MakeTechnique,
 }
@@ -79,7 +79,7 @@ impl std::str::FromStr for Spec {
         let (name, values) = text.split_once(':').unwrap_or((text, ""));
         let technique = find(name)?;
         let given = parse_values(technique.name, technique.settings, values)?;
-        let mut settings = (technique.defaults)();
+        let mut settings = (technique.defaults)(&given);
         settings.as_object_mut().unwrap_or(&mut Map::new()).extend(given);
         Ok(Spec { technique, settings, text: text.to_owned() })
     }
@@ -107,6 +107,11 @@ pub trait Describe: Technique + Sized + 'static {
     /// Name on the command line, name for people, source, and what it does in one sentence.
     const ABOUT: About;
 
+    /// Its defaults where these settings are given. Techniques with presets start from the preset that is given.
+    fn defaults(_given: &Map<String, Value>) -> Self::Settings {
+        Self::Settings::default()
+    }
+
     /// Makes one; compiles its pipelines.
     fn make(gpu: &Gpu, settings: Self::Settings) -> Result<Self, Error>;
 }
@@ -131,7 +136,7 @@ pub(crate) const fn entry<T: Describe>() -> TechniqueInfo {
         source: T::ABOUT.source,
         summary: T::ABOUT.summary,
         settings: T::Settings::FIELDS,
-        defaults: || serde_json::to_value(T::Settings::default()).expect("settings are plain data"),
+        defaults: |given| serde_json::to_value(T::defaults(given)).expect("settings are plain data"),
         make: |gpu, value| {
             let settings = serde_json::from_value(value).map_err(|e| SpecError::Value {
                 technique: T::ABOUT.name.to_owned(),

@@ -4,7 +4,7 @@ mod common;
 
 use antumbra::Error;
 use antumbra::passes::{depth_layers::DepthLayers, depth_map::DepthMap};
-use antumbra::resource::read_layer;
+use antumbra::resource::{Texture, read_layers, read_texture};
 use antumbra::scene::SceneRenderer;
 use antumbra_reference::{Ray, Tracer};
 use antumbra_scene::{Mesh, Scene};
@@ -14,14 +14,23 @@ use pollster::block_on;
 
 const SIZE: u32 = 160;
 
-fn depths(texture: &wgpu::Texture, layer: u32) -> Vec<f32> {
-    bytemuck::pod_collect_to_vec(&block_on(read_layer(gpu(), texture, layer)).expect("reads"))
+fn depths(texture: &wgpu::Texture) -> Vec<f32> {
+    bytemuck::pod_collect_to_vec(&block_on(read_texture(gpu(), texture)).expect("reads"))
+}
+
+/// The layers in a texture.
+fn of_texture(texture: &Texture) -> Vec<Vec<f32>> {
+    let [count, width] = [texture.texture.depth_or_array_layers(), texture.texture.width()];
+    let bytes = block_on(read_layers(gpu(), &texture.texture)).expect("reads");
+    let all: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
+    assert_eq!(all.len(), (count * width * width) as usize);
+    all.chunks_exact((width * width) as usize).map(<[f32]>::to_vec).collect()
 }
 
 /// The layers of a scene, nearest first.
 fn layers(renderer: &SceneRenderer, size: u32, count: u32) -> Vec<Vec<f32>> {
     let maps = drawn_layers(renderer, size, count);
-    (0..count).map(|layer| depths(&maps.texture.texture, layer)).collect()
+    of_texture(&maps.texture)
 }
 
 fn drawn_layers(renderer: &SceneRenderer, size: u32, count: u32) -> DepthLayers {
@@ -31,7 +40,7 @@ fn drawn_layers(renderer: &SceneRenderer, size: u32, count: u32) -> DepthLayers 
 }
 
 fn draw(slot: &mut Option<DepthLayers>, renderer: &SceneRenderer, size: u32, count: u32) {
-    common::submit(|recorder| DepthLayers::of_light(slot, recorder, &renderer.frame, size, count).map(|_| ()))
+    common::submit(|recorder| DepthLayers::of_light(slot, recorder, &renderer.frame, size, count, 0.0).map(|_| ()))
         .expect("draws");
 }
 
@@ -61,13 +70,13 @@ fn the_first_layer_is_the_depth_map_and_depths_descend() {
         let mut slot = None;
         common::submit(|recorder| DepthMap::of_light(&mut slot, recorder, &renderer.frame, SIZE).map(|_| ()))
             .expect("draws");
-        let map = depths(&slot.expect("made").texture.texture, 0);
+        let map = depths(&slot.expect("made").texture.texture);
         assert!(filled(&map) > 1000, "{spec}: the map is empty");
         for count in [1, 4] {
             let maps = drawn_layers(&renderer, SIZE, count);
-            let wrong = differing(&depths(&maps.nearest.texture.texture, 0), &map);
+            let wrong = differing(&depths(&maps.nearest.texture.texture), &map);
             assert_eq!(wrong, 0, "{spec}: {wrong} texels of the map drawn by the way are not those of the map");
-            let layers: Vec<Vec<f32>> = (0..count).map(|i| depths(&maps.texture.texture, i)).collect();
+            let layers = of_texture(&maps.texture);
             let wrong = differing(&layers[0], &map);
             assert_eq!(wrong, 0, "{spec}: {wrong} texels of the first of {count} layers are not those of the map");
             for (i, pair) in layers.windows(2).enumerate() {
@@ -212,12 +221,12 @@ fn nothing_is_left_of_the_frame_before() {
     });
     let mut slot = None;
     draw(&mut slot, &high, SIZE, 2);
-    let first = slot.as_ref().expect("made").texture.texture.clone();
+    let first = slot.as_ref().expect("made").texture.clone();
     draw(&mut slot, &low, SIZE, 2);
-    let texture = slot.expect("made").texture.texture;
-    assert_eq!(texture, first, "the maps are drawn into again");
-    for (i, fresh) in layers(&low, SIZE, 2).iter().enumerate() {
-        let wrong = differing(&depths(&texture, i as u32), fresh);
+    let again = slot.expect("made").texture;
+    assert_eq!(again.texture, first.texture, "the maps are drawn into again");
+    for (i, (fresh, used)) in layers(&low, SIZE, 2).iter().zip(of_texture(&again)).enumerate() {
+        let wrong = differing(&used, fresh);
         assert!(filled(fresh) > 500 && wrong == 0, "layer {i}: {wrong} texels differ from maps that are drawn first");
     }
 }
@@ -226,29 +235,29 @@ fn nothing_is_left_of_the_frame_before() {
 fn maps_are_kept_while_size_number_and_casters_are_the_same() {
     let (few, more) = (drawn(&builtin("fence:slats=9"), [16, 16]), drawn(&builtin("layers"), [16, 16]));
     let mut slot = None;
-    let mut texture = |renderer: &SceneRenderer, size, count| {
+    let mut buffer = |renderer: &SceneRenderer, size, count| {
         let mut found = None;
         common::submit(|recorder| {
-            let maps = DepthLayers::of_light(&mut slot, recorder, &renderer.frame, size, count)?;
+            let maps = DepthLayers::of_light(&mut slot, recorder, &renderer.frame, size, count, 0.0)?;
             assert_eq!(maps.memory()[1].bytes, u64::from(size * size * (2 * count + 1) * 4));
             found = Some(maps.texture.texture.clone());
             Ok(())
         })
         .map(|_| found.expect("drawn"))
     };
-    let first = texture(&few, 64, 2).expect("draws");
-    assert_eq!(texture(&few, 64, 2).expect("draws"), first);
+    let first = buffer(&few, 64, 2).expect("draws");
+    assert_eq!(buffer(&few, 64, 2).expect("draws"), first);
     let mut last = first;
     for (renderer, size, count) in [(&few, 128, 2), (&few, 128, 3), (&more, 128, 3)] {
-        let next = texture(renderer, size, count).expect("draws");
+        let next = buffer(renderer, size, count).expect("draws");
         assert_ne!(next, last, "{size} texels, {count} layers");
         last = next;
     }
-    assert!(matches!(texture(&few, 1 << 20, 2), Err(Error::Size { .. })), "a map that no device holds");
+    assert!(matches!(buffer(&few, 1 << 20, 2), Err(Error::Size { .. })), "a map that no device holds");
     let (largest, binding) =
         (gpu().capabilities.max_texture_size, gpu().device.limits().max_storage_buffer_binding_size);
     if 16 * u64::from(largest).pow(2) > binding {
-        match texture(&few, largest, 4) {
+        match buffer(&few, largest, 4) {
             Err(Error::Size { what: "depth layers", max, .. }) => assert!(max >= 1024 && max < largest, "{max}"),
             other => panic!("4 maps of {largest} texels a side: {other:?}"),
         }

@@ -99,7 +99,7 @@ fn every_technique_says_what_it_is_and_what_memory_it_takes() {
         }
         for setting in info.settings {
             assert!(!setting.help.is_empty(), "{}: `{}` has no help", info.name, setting.key);
-            let default = &(info.defaults)()[setting.key];
+            let default = &(info.defaults)(&Default::default())[setting.key];
             let word = default.as_str().map_or(default.to_string(), str::to_owned);
             let spec = format!("{}:{}={word}", info.name, setting.key);
             assert!(spec.parse::<antumbra::Spec>().is_ok(), "the default itself must be a value: {spec}");

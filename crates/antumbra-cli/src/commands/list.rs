@@ -17,7 +17,7 @@ pub fn techniques(json: bool) -> Result<(), CliError> {
     let mut text = String::new();
     for t in TECHNIQUES {
         let _ = writeln!(text, "{:<18} {} [{}]\n{:18} {}", t.name, t.title, t.source, "", t.summary);
-        let defaults = (t.defaults)();
+        let defaults = (t.defaults)(&Default::default());
         for s in t.settings {
             let _ = writeln!(text, "{:18}   {}={}  {} ({})", "", s.key, plain(&defaults[s.key]), s.help, values_of(s));
         }
@@ -26,7 +26,7 @@ pub fn techniques(json: bool) -> Result<(), CliError> {
 }
 
 fn technique_json(t: &TechniqueInfo) -> serde_json::Value {
-    let defaults = (t.defaults)();
+    let defaults = (t.defaults)(&Default::default());
     let setting = |s: &Setting| {
         let mut value = serde_json::to_value(s).unwrap_or_default();
         value["default"] = defaults[s.key].clone();

@@ -20,20 +20,21 @@
 use crate::casters::Casters;
 use crate::passes::depth_map::DepthMap;
 use crate::recorder::{Recorder, Work};
-use crate::shader::{HostStruct, ShaderKey};
 use crate::resource::{Texture, storage_buffer, uniform};
+use crate::shader::{HostStruct, ShaderKey};
 use crate::technique::Memory;
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 
 gpu_struct! {
-    /// Where a texel's depths are in the buffer, layer after layer.
+    /// Where a texel's depths are in the buffer, layer after layer, row after row.
     pub(crate) struct LayerShape {
+        /// Texels a side.
+        size: u32,
         /// Texels from one row to the next.
         row: u32,
-        /// Texels from one layer to the next.
-        layer: u32,
-        /// Layers.
+        /// Layers that are collected.
         count: u32,
+        /// Surfaces that are less than this behind the one before are left out, in the unit of the depths.
         gap: f32,
     }
 }
@@ -41,7 +42,7 @@ gpu_struct! {
 /// Square maps of `near / z` as in [`DepthMap`], one behind the other: layer `i` holds the i-th nearest surface of each
 /// texel, front or back, and 0 where there are no more. Depths descend strictly: surfaces of the same depth to the last
 /// bit are one. Coinciding surfaces that are not of the same triangles may differ in the last bits, by up to some 4e-7 of
-/// the depth, and are then two.
+/// the depth, and are then two unless surfaces are left out.
 pub struct DepthLayers {
     /// `R32Float`, `size` x `size` x `layers`; its view is an array even of a single layer.
     pub texture: Texture,
@@ -52,76 +53,79 @@ pub struct DepthLayers {
     shape_buffer: wgpu::Buffer,
 }
 
+/// Surfaces that are collected for each texel where some are left out, if that many fit into a buffer.
+const COLLECTED: u32 = 8;
+
 impl DepthLayers {
-    /// Empty maps of `size` texels a side; `layers` is 1 or more.
-    pub fn new(gpu: &Gpu, size: u32, layers: u32, casters: &Casters) -> Result<DepthLayers, Error> {
+    /// Empty maps of `size` texels a side; `layers` is 1 or more. Those that are `left_out` are collected besides.
+    pub fn new(gpu: &Gpu, size: u32, layers: u32, left_out: bool, casters: &Casters) -> Result<DepthLayers, Error> {
         gpu.check_size("shadow map", size, size)?;
-        let row = size.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / 4);
-        let kept = layers;
-        let layers = std::env::var("COLLECT").map_or(layers, |v| v.parse().unwrap());
-        let shape = LayerShape { row, layer: row * size, count: layers, gap: 0.0 };
-        let bytes = 4 * u64::from(row) * u64::from(size) * u64::from(layers);
         let limits = gpu.device.limits();
-        let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size);
-        if bytes > most {
-            let max = (most / (4 * u64::from(layers))).isqrt() as u32;
+        let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size) / 4;
+        let row = size.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / 4);
+        let texels = u64::from(row) * u64::from(size);
+        let fit = (most / texels) as u32;
+        if fit < layers {
+            let max = (most / u64::from(layers)).isqrt() as u32;
             return Err(Error::Size { what: "depth layers", width: size, height: size, max });
         }
+        let count = if left_out { COLLECTED.min(fit).max(layers) } else { layers };
+        let shape = LayerShape { size, row, count, gap: 0.0 };
         let usage =
             wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
         Ok(DepthLayers {
-            texture: Texture::array(gpu, "depth layers", [size; 2], kept, 1, wgpu::TextureFormat::R32Float, usage),
+            texture: Texture::array(gpu, "depth layers", [size; 2], layers, 1, wgpu::TextureFormat::R32Float, usage),
+            depths: storage_buffer(gpu, "nearest depths", 4 * texels * u64::from(count)),
             nearest: DepthMap::new(gpu, size, casters)?,
-            depths: storage_buffer(gpu, "nearest depths", bytes),
             shape,
             shape_buffer: uniform(gpu, "layer shape", &shape),
         })
     }
 
     /// Makes maps in `slot` unless `layers` of this size for these casters are there, and draws what the light's centre
-    /// sees and what lies behind it.
+    /// sees and what lies behind it. Left out is what moves by less than `apart` texels against the surface before it
+    /// when the eye goes from the light's centre to its rim; 0 keeps all.
     pub fn of_light<'a>(
         slot: &'a mut Option<DepthLayers>,
         recorder: &mut Recorder,
         frame: &Frame,
         size: u32,
         layers: u32,
+        apart: f32,
     ) -> Result<&'a DepthLayers, Error> {
         let casters = &frame.casters;
-        if !slot.as_ref().is_some_and(|m| m.nearest.fits(size, casters) && m.texture.texture.depth_or_array_layers() == layers) {
+        let fits = |m: &DepthLayers| m.nearest.fits(size, casters) && m.texture.texture.depth_or_array_layers() == layers;
+        if !slot.as_ref().is_some_and(fits) {
             *slot = None; // Frees the old maps before the new ones are made.
-            *slot = Some(DepthLayers::new(recorder.gpu, size, layers, casters)?);
+            *slot = Some(DepthLayers::new(recorder.gpu, size, layers, apart > 0.0, casters)?);
         }
         let maps = slot.as_ref().expect("just made");
-        maps.record(recorder, frame)?;
+        maps.record(recorder, frame, apart)?;
         Ok(maps)
     }
 
-    fn record(&self, recorder: &mut Recorder, frame: &Frame) -> Result<(), Error> {
+    fn record(&self, recorder: &mut Recorder, frame: &Frame, apart: f32) -> Result<(), Error> {
+        let texel = 2.0 * frame.frustum.tan_half / self.shape.size as f32;
+        let half_light = (0.5 * frame.light.size).max(glam::Vec2::splat(1.0e-6));
+        let gap = apart * frame.frustum.near * (texel / half_light).min_element();
+        let shape = LayerShape { gap, ..self.shape };
+        recorder.gpu.queue.write_buffer(&self.shape_buffer, 0, &shape.uniform_bytes());
         recorder.encoder.clear_buffer(&self.depths, 0, None);
         let set = bindings! { nearest_depths: &self.depths, layer_shape: &self.shape_buffer };
         self.nearest.draw(recorder, "depth layers", &frame.casters, frame.map_clip_from_world(), Some(set))?;
-        let size = self.texture.texture.size();
-        let kappa: f32 = std::env::var("KAPPA").map_or(0., |v| v.parse().unwrap());
-        if kappa > 0. {
-            let texel = frame.frustum.tan_half * 2.0 / size.width as f32;
-            let per = texel / (0.5 * frame.light.size.max(glam::Vec2::splat(1e-6)));
-            let gap = kappa * per.min_element() * frame.frustum.near;
-            let v = LayerShape { gap, ..self.shape };
-            recorder.gpu.queue.write_buffer(&self.shape_buffer, 0, &v.uniform_bytes());
+        if gap > 0.0 {
             let key = ShaderKey::new("passes::depth_layers").with::<LayerShape>();
-            let thin = recorder.gpu.compute_pipeline(&key, "thin")?;
-            let set = bindings! { nearest_depths: &self.depths, layer_shape: &self.shape_buffer };
-            let n = (self.shape.layer).div_ceil(64);
-            recorder.compute("thin", &thin, set, Work::Groups([n.min(65535), n.div_ceil(65535), 1]));
+            let leave_out = recorder.gpu.compute_pipeline(&key, "leave_out")?;
+            recorder.compute("leaving out layers", &leave_out, set, Work::Threads([shape.size, shape.size, 1]));
         }
+        let extent = self.texture.texture.size();
         let layout = wgpu::TexelCopyBufferLayout {
             offset: 0,
-            bytes_per_row: Some(4 * self.shape.row),
-            rows_per_image: Some(size.height),
+            bytes_per_row: Some(4 * shape.row),
+            rows_per_image: Some(shape.size),
         };
         let source = wgpu::TexelCopyBufferInfo { buffer: &self.depths, layout };
-        recorder.encoder.copy_buffer_to_texture(source, self.texture.texture.as_image_copy(), size);
+        recorder.encoder.copy_buffer_to_texture(source, self.texture.texture.as_image_copy(), extent);
         Ok(())
     }
 

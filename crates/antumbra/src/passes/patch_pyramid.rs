@@ -1,6 +1,6 @@
 //! A pyramid of patches over the layers of a depth map: what lies below a node as one plane or as two surfaces.
 
-use crate::passes::depth_pyramid::PyramidUniform;
+use crate::passes::{depth_layers::DepthLayers, depth_pyramid::PyramidUniform};
 use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
@@ -13,6 +13,7 @@ pub struct PatchPyramid {
     pub patches: Texture,
     levels: Vec<wgpu::TextureView>,
     uniform: wgpu::Buffer,
+    map_size: u32,
 }
 
 impl PatchPyramid {
@@ -27,23 +28,21 @@ impl PatchPyramid {
             levels: (0..mips).map(|m| patches.array_mip(m)).collect(),
             uniform: uniform(gpu, "patches", &PyramidUniform { map_near: 1.0 }),
             patches,
+            map_size: size,
         }
     }
 
     /// Makes a pyramid in `slot` unless one for such maps is there.
     pub fn ensure<'a>(slot: &'a mut Option<PatchPyramid>, gpu: &Gpu, size: u32, layers: u32) -> &'a PatchPyramid {
-        let half = size.div_ceil(2).max(1);
-        let fits = |p: &PatchPyramid| {
-            p.patches.texture.width() == half && p.patches.texture.depth_or_array_layers() == layers
-        };
+        let fits = |p: &PatchPyramid| p.map_size == size && p.patches.texture.depth_or_array_layers() == layers;
         if !slot.as_ref().is_some_and(fits) {
             *slot = Some(PatchPyramid::new(gpu, size, layers));
         }
         slot.as_ref().expect("just made")
     }
 
-    /// Reduces maps whose frustum begins at `map_near` metres.
-    pub fn record(&self, recorder: &mut Recorder, maps: &wgpu::TextureView, map_near: f32) -> Result<(), Error> {
+    /// Reduces the first layers of maps whose frustum begins at `map_near` metres.
+    pub fn record(&self, recorder: &mut Recorder, maps: &DepthLayers, map_near: f32) -> Result<(), Error> {
         recorder.gpu.queue.write_buffer(&self.uniform, 0, &PyramidUniform { map_near }.uniform_bytes());
         let key = ShaderKey::new("passes::patch_pyramid").with::<PyramidUniform>();
         let first = recorder.gpu.compute_pipeline(&key.clone().feature("first", true), "reduce")?;
@@ -54,7 +53,7 @@ impl PatchPyramid {
                 let pipeline = if m == 0 { &first } else { &next };
                 let set = bindings! {
                     step: &self.uniform,
-                    source_maps: maps,
+                    source_maps: &maps.texture,
                     source_patches: &self.levels[m.saturating_sub(1)],
                     level_patches: level,
                 };

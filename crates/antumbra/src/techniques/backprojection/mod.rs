@@ -10,22 +10,13 @@ use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
 use crate::shader::ShaderKey;
 use crate::technique::{About, Describe, Memory, Technique};
-use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
+use crate::{Error, Frame, Gpu, bindings, gpu_struct};
+use serde_json::{Map, Value};
 use std::sync::Arc;
 
-crate::settings! {
-    /// Settings of [`Backprojection`].
-    pub struct BackprojectionSettings {
-        /// Shadow map, texels a side.
-        map: u32 = 1024, Kind::Integer { min: 16, max: 16384 };
-        /// Surfaces behind each other that are kept for each texel.
-        layers: u32 = 1, Kind::Integer { min: 1, max: 4 };
-        /// Points of the light.
-        bits: u32 = 256, Kind::Integer { min: 64, max: 1024 };
-        /// Patches a side that the light is resolved into at most.
-        window: f32 = 32.0, Kind::Number { min: 1.0, max: 1024.0 };
-    }
-}
+mod settings;
+
+pub use settings::{BackprojectionSettings, Bits, Join, Quality};
 
 gpu_struct! {
     /// How finely is looked.
@@ -57,6 +48,10 @@ impl Describe for Backprojection {
         summary: "x",
     };
 
+    fn defaults(given: &Map<String, Value>) -> BackprojectionSettings {
+        BackprojectionSettings::suited_to(given)
+    }
+
     fn make(gpu: &Gpu, settings: BackprojectionSettings) -> Result<Self, Error> {
         Backprojection::with_gather(gpu, settings, "techniques::backprojection::gather")
     }
@@ -66,11 +61,9 @@ impl Backprojection {
     /// With the shader that gathers the patches.
     pub(crate) fn with_gather(gpu: &Gpu, settings: BackprojectionSettings, gather: &'static str) -> Result<Self, Error> {
         let key = ShaderKey::new(gather)
-            .feature("bits64", settings.bits == 64)
-            .feature("bits128", settings.bits == 128)
-            .feature("bits256", settings.bits == 256)
-            .feature("bits512", settings.bits == 512)
-            .feature("bits1024", settings.bits == 1024)
+            .feature(settings.bits.feature(), true)
+            .feature("sum", settings.join == Join::Sum)
+            .feature("flat", !settings.gaps_filled)
             .with::<FrameUniform>()
             .with::<BackprojectionUniform>();
         let value = BackprojectionUniform { layers: settings.layers, leaf: 1.0 / settings.window };
@@ -89,14 +82,14 @@ impl Backprojection {
 impl Technique for Backprojection {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         let gpu = recorder.gpu;
-        let maps = DepthLayers::of_light(&mut self.map, recorder, frame, self.settings.map, self.settings.layers)?;
+        let maps = DepthLayers::of_light(&mut self.map, recorder, frame, self.settings.map, self.settings.layers, self.settings.apart)?;
         let map = &maps.nearest;
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
         pyramid.record(recorder, map, frame.frustum.near)?;
         list.record(recorder, frame, map, pyramid, false)?;
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
-        patches.record(recorder, &maps.texture.view, frame.frustum.near)?;
+        patches.record(recorder, maps, frame.frustum.near)?;
         let set = frame.bindings(bindings! {
             depth_map: &map.texture,
             penumbra_pixels: &list.buffer,

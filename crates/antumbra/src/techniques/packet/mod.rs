@@ -4,6 +4,7 @@ use super::backprojection::{Backprojection, BackprojectionSettings};
 use crate::recorder::Recorder;
 use crate::technique::{About, Describe, Memory, Technique};
 use crate::{Error, Frame, Gpu};
+use serde_json::{Map, Value};
 
 /// [`Backprojection`] with the work of 64 neighbouring pixels shared.
 pub struct Packet(Backprojection);
@@ -16,6 +17,10 @@ impl Describe for Packet {
         source: "Yang 2009",
         summary: "x",
     };
+
+    fn defaults(given: &Map<String, Value>) -> BackprojectionSettings {
+        BackprojectionSettings::suited_to(given)
+    }
 
     fn make(gpu: &Gpu, settings: BackprojectionSettings) -> Result<Self, Error> {
         Backprojection::with_gather(gpu, settings, "techniques::packet::packet").map(Packet)
