@@ -30,7 +30,12 @@ impl PenumbraList {
         slot.as_ref().expect("just made")
     }
 
-    /// Writes the visibility of known pixels and lists the others. What the light's centre sees nothing of may be lit
+    /// Pixels of the picture that it is for.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Writes the visibility of known pixels and lists the others, whose visibility is -1 until the technique writes it. What the light's centre sees nothing of may be lit
     /// from its rim, through a gap that the centre does not see: techniques that look from other points too do not
     /// `trust_dark`, and get such pixels listed. What is lit by the map surely is.
     pub fn record(

@@ -10,3 +10,4 @@ pub mod geometry_buffer;
 pub mod light_maps;
 pub mod patch_pyramid;
 pub mod picture;
+pub mod sparse;

@@ -3,7 +3,7 @@
 
 use crate::frame::FrameUniform;
 use crate::passes::{
-    classify::PenumbraList, depth_layers::DepthLayers, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid,
+    classify::PenumbraList, depth_layers::DepthLayers, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid, sparse::SparsePixels,
 };
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 mod settings;
 
-pub use settings::{BackprojectionSettings, Bits, Join, Quality};
+pub use settings::{BackprojectionSettings, Bits, Join, Quality, Spacing};
 
 gpu_struct! {
     /// How finely is looked.
@@ -24,6 +24,8 @@ gpu_struct! {
         layers: u32,
         /// Smallest width of a patch on the light, as a part of the light's.
         leaf: f32,
+        /// Pixels between those that are looked at first.
+        spacing: f32,
        
     }
 }
@@ -37,6 +39,7 @@ pub struct Backprojection {
     pyramid: Option<DepthPyramid>,
     patches: Option<PatchPyramid>,
     list: Option<PenumbraList>,
+    sparse: Option<SparsePixels>,
 }
 
 impl Describe for Backprojection {
@@ -66,7 +69,7 @@ impl Backprojection {
             .feature("flat", !settings.gaps_filled)
             .with::<FrameUniform>()
             .with::<BackprojectionUniform>();
-        let value = BackprojectionUniform { layers: settings.layers, leaf: 1.0 / settings.window };
+        let value = BackprojectionUniform { layers: settings.layers, leaf: 1.0 / settings.window, spacing: settings.spacing.pixels() as f32 };
         Ok(Backprojection {
             gather: gpu.compute_pipeline(&key, "gather")?,
             uniform: uniform(gpu, "backprojection", &value),
@@ -75,6 +78,7 @@ impl Backprojection {
             pyramid: None,
             patches: None,
             list: None,
+            sparse: None,
         })
     }
 }
@@ -90,14 +94,18 @@ impl Technique for Backprojection {
         list.record(recorder, frame, map, pyramid, false)?;
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
         patches.record(recorder, maps, frame.frustum.near)?;
-        let set = frame.bindings(bindings! {
-            depth_map: &map.texture,
-            penumbra_pixels: &list.buffer,
-            backprojection: &self.uniform,
-            patches: &patches.patches,
-        });
-        recorder.compute("back-projection", &self.gather, &set, Work::Indirect(&list.buffer, 0));
-        Ok(())
+        let sparse =
+            SparsePixels::ensure(&mut self.sparse, gpu, frame.geometry.size, self.settings.spacing.pixels());
+        sparse.record(recorder, frame, list, |recorder, chosen| {
+            let set = frame.bindings(bindings! {
+                depth_map: &map.texture,
+                penumbra_pixels: &chosen.buffer,
+                backprojection: &self.uniform,
+                patches: &patches.patches,
+                sharpness: &sparse.sharpness,
+            });
+            recorder.compute("back-projection", &self.gather, &set, Work::Indirect(&chosen.buffer, 0));
+        })
     }
 
     fn memory(&self) -> Vec<Memory> {
@@ -105,6 +113,7 @@ impl Technique for Backprojection {
         map.chain(self.pyramid.iter().map(DepthPyramid::memory))
             .chain(self.patches.iter().map(PatchPyramid::memory))
             .chain(self.list.iter().map(PenumbraList::memory))
+            .chain(self.sparse.iter().map(SparsePixels::memory))
             .collect()
     }
 }

@@ -30,6 +30,20 @@ crate::choices! {
 }
 
 crate::choices! {
+    /// Pixels from one to the next.
+    pub enum Spacing {
+        /// 1.
+        S1 = "1",
+        /// 2.
+        S2 = "2",
+        /// 4.
+        S4 = "4",
+        /// 8.
+        S8 = "8",
+    }
+}
+
+crate::choices! {
     /// Settings that go well together, found by `antumbra bench backprojection`.
     pub enum Quality {
         /// As quick as percentage-closer soft shadows.
@@ -54,6 +68,8 @@ crate::settings! {
         apart: f32 = 4.0, Kind::Number { min: 0.0, max: 1000.0 };
         /// Patches a side that the light is resolved into at least.
         window: f32 = 8.0, Kind::Number { min: 1.0, max: 256.0 };
+        /// Pixels between those that are looked at first; the others follow where these do not tell them. 1 looks at all.
+        spacing: Spacing = Spacing::S4, Kind::Choice { options: Spacing::OPTIONS };
         /// Points of the light for join=union.
         bits: Bits = Bits::B256, Kind::Choice { options: Bits::OPTIONS };
         /// How the parts of the light that patches hide are put together.
@@ -78,6 +94,17 @@ impl BackprojectionSettings {
     pub(crate) fn suited_to(given: &Map<String, Value>) -> BackprojectionSettings {
         let quality = given.get("quality").and_then(|q| serde_json::from_value(q.clone()).ok());
         quality.map_or_else(Default::default, BackprojectionSettings::of_quality)
+    }
+}
+
+impl Spacing {
+    pub(crate) fn pixels(self) -> u32 {
+        match self {
+            Spacing::S1 => 1,
+            Spacing::S2 => 2,
+            Spacing::S4 => 4,
+            Spacing::S8 => 8,
+        }
     }
 }
 
