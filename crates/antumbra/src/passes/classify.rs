@@ -1,7 +1,7 @@
 //! Which pixels need a filter at all: lit, dark and turned-away pixels are answered at once, penumbra pixels are listed.
 
 use crate::frame::{Frame, FrameUniform};
-use crate::passes::{depth_map::DepthMap, depth_pyramid::DepthPyramid};
+use crate::passes::{depth_map::DepthMap, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid};
 use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::storage_buffer;
 use crate::shader::ShaderKey;
@@ -13,6 +13,17 @@ pub struct PenumbraList {
     /// Indirect arguments, the count, then the pixels.
     pub buffer: wgpu::Buffer,
     size: [u32; 2],
+}
+
+/// What bounds the depths below a window of the map.
+#[derive(Clone, Copy)]
+pub enum Pyramid<'a> {
+    /// Depths; what is dark from the light's centre is dark.
+    Trusted(&'a DepthPyramid),
+    /// Depths.
+    Depths(&'a DepthPyramid),
+    /// The first layer of patches.
+    Patches(&'a PatchPyramid),
 }
 
 impl PenumbraList {
@@ -36,25 +47,27 @@ impl PenumbraList {
     }
 
     /// Writes the visibility of known pixels and lists the others, whose visibility is -1 until the technique writes it. What the light's centre sees nothing of may be lit
-    /// from its rim, through a gap that the centre does not see: techniques that look from other points too do not
-    /// `trust_dark`, and get such pixels listed. What is lit by the map surely is.
+    /// from its rim, through a gap that the centre does not see: only techniques that look from nowhere else trust a depth
+    /// pyramid that such pixels are dark; others get them listed. What is lit by the map surely is.
     pub fn record(
         &self,
         recorder: &mut Recorder,
         frame: &Frame,
         map: &DepthMap,
-        pyramid: &DepthPyramid,
-        trust_dark: bool,
+        pyramid: Pyramid,
     ) -> Result<(), Error> {
-        let key = ShaderKey::new("passes::classify").feature("trust_dark", trust_dark).with::<FrameUniform>();
+        let key = ShaderKey::new("passes::classify").feature("trust_dark", matches!(pyramid, Pyramid::Trusted(_)))
+            .feature("patches", matches!(pyramid, Pyramid::Patches(_)))
+            .with::<FrameUniform>();
         let classify = recorder.gpu.compute_pipeline(&key, "classify_pixels")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
         recorder.encoder.clear_buffer(&self.buffer, 0, Some(16));
-        let set = frame.bindings(bindings! {
-            depth_map: &map.texture,
-            pyramid_bounds: &pyramid.bounds,
-            penumbra: &self.buffer,
-        });
+        let nodes = match pyramid {
+            Pyramid::Trusted(p) | Pyramid::Depths(p) => bindings! { pyramid_bounds: &p.bounds },
+            Pyramid::Patches(p) => bindings! { patches: &p.patches },
+        };
+        let map = bindings! { depth_map: &map.texture, penumbra: &self.buffer };
+        let set = frame.bindings(&[map.as_slice(), nodes.as_slice()].concat());
         let [width, height] = frame.geometry.size;
         recorder.compute_pass("pixel classification", |gpu, pass| {
             pass.set_pipeline(&classify.pipeline);

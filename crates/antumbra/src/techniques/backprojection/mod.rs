@@ -3,7 +3,7 @@
 
 use crate::frame::FrameUniform;
 use crate::passes::{
-    classify::PenumbraList, depth_layers::DepthLayers, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid, sparse::SparsePixels,
+    classify::{PenumbraList, Pyramid}, depth_layers::DepthLayers, patch_pyramid::PatchPyramid, sparse::SparsePixels,
 };
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
@@ -36,7 +36,6 @@ pub struct Backprojection {
     gather: Arc<ComputePipeline>,
     uniform: wgpu::Buffer,
     map: Option<DepthLayers>,
-    pyramid: Option<DepthPyramid>,
     patches: Option<PatchPyramid>,
     list: Option<PenumbraList>,
     sparse: Option<SparsePixels>,
@@ -48,7 +47,7 @@ impl Describe for Backprojection {
         name: "backprojection",
         title: "Layered back-projection",
         source: "Guennebaud 2006, 2007",
-        summary: "x",
+        summary: "what hides the light is projected back to it from each pixel, over several layers; nothing to tune",
     };
 
     fn defaults(given: &Map<String, Value>) -> BackprojectionSettings {
@@ -75,7 +74,6 @@ impl Backprojection {
             uniform: uniform(gpu, "backprojection", &value),
             settings,
             map: None,
-            pyramid: None,
             patches: None,
             list: None,
             sparse: None,
@@ -88,12 +86,10 @@ impl Technique for Backprojection {
         let gpu = recorder.gpu;
         let maps = DepthLayers::of_light(&mut self.map, recorder, frame, self.settings.map, self.settings.layers, self.settings.apart)?;
         let map = &maps.nearest;
-        let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
-        pyramid.record(recorder, map, frame.frustum.near)?;
-        list.record(recorder, frame, map, pyramid, false)?;
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
         patches.record(recorder, maps, frame.frustum.near)?;
+        list.record(recorder, frame, map, Pyramid::Patches(patches))?;
         let sparse =
             SparsePixels::ensure(&mut self.sparse, gpu, frame.geometry.size, self.settings.spacing.pixels());
         sparse.record(recorder, frame, list, |recorder, chosen| {
@@ -110,8 +106,7 @@ impl Technique for Backprojection {
 
     fn memory(&self) -> Vec<Memory> {
         let map = self.map.iter().flat_map(DepthLayers::memory);
-        map.chain(self.pyramid.iter().map(DepthPyramid::memory))
-            .chain(self.patches.iter().map(PatchPyramid::memory))
+        map.chain(self.patches.iter().map(PatchPyramid::memory))
             .chain(self.list.iter().map(PenumbraList::memory))
             .chain(self.sparse.iter().map(SparsePixels::memory))
             .collect()

@@ -1,7 +1,8 @@
 //! Back-projection by packets of pixels that share one walk through the pyramid [Yang 2009].
 
-use super::backprojection::{Backprojection, BackprojectionSettings};
+use super::backprojection::{Backprojection, BackprojectionSettings, Spacing};
 use crate::recorder::Recorder;
+use crate::settings::SpecError;
 use crate::technique::{About, Describe, Memory, Technique};
 use crate::{Error, Frame, Gpu};
 use serde_json::{Map, Value};
@@ -15,14 +16,22 @@ impl Describe for Packet {
         name: "packet",
         title: "Layered back-projection by packets",
         source: "Yang 2009",
-        summary: "x",
+        summary: "the same by 64 pixels at a time, which walk through the upper map together; as quick or slow as their adapter",
     };
 
     fn defaults(given: &Map<String, Value>) -> BackprojectionSettings {
-        BackprojectionSettings::suited_to(given)
+        BackprojectionSettings { spacing: Spacing::S1, ..BackprojectionSettings::suited_to(given) }
     }
 
     fn make(gpu: &Gpu, settings: BackprojectionSettings) -> Result<Self, Error> {
+        if settings.spacing != Spacing::S1 {
+            return Err(Error::Spec(SpecError::Value {
+                technique: Self::ABOUT.name.to_owned(),
+                key: "spacing".to_owned(),
+                value: settings.spacing.pixels().to_string(),
+                expected: "a packet is of pixels beside each other: leave it at 1, or take `backprojection`".to_owned(),
+            }));
+        }
         Backprojection::with_gather(gpu, settings, "techniques::packet::packet").map(Packet)
     }
 }
