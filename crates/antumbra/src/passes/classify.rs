@@ -12,6 +12,8 @@ use crate::{Error, Gpu, bindings};
 pub struct PenumbraList {
     /// Indirect arguments, the count, then the pixels.
     pub buffer: wgpu::Buffer,
+    /// Indirect arguments, the count, then for each tile of 8 x 8 pixels that has some the first and how many.
+    pub tiles: wgpu::Buffer,
     size: [u32; 2],
 }
 
@@ -30,7 +32,12 @@ impl PenumbraList {
     /// Room for every pixel.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> PenumbraList {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
-        PenumbraList { buffer: storage_buffer(gpu, "penumbra pixels", 16 + 8 * pixels), size }
+        let tiles = u64::from(size[0].div_ceil(8)) * u64::from(size[1].div_ceil(8));
+        PenumbraList {
+            buffer: storage_buffer(gpu, "penumbra pixels", 16 + 8 * pixels),
+            tiles: storage_buffer(gpu, "penumbra tiles", 16 + 8 * tiles),
+            size,
+        }
     }
 
     /// Makes a list in `slot` unless one for a picture of this size is there.
@@ -61,12 +68,14 @@ impl PenumbraList {
             .with::<FrameUniform>();
         let classify = recorder.gpu.compute_pipeline(&key, "classify_pixels")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
-        recorder.encoder.clear_buffer(&self.buffer, 0, Some(16));
+        for counted in [&self.buffer, &self.tiles] {
+            recorder.encoder.clear_buffer(counted, 0, Some(16));
+        }
         let nodes = match pyramid {
             Pyramid::Trusted(p) | Pyramid::Depths(p) => bindings! { pyramid_bounds: &p.bounds },
             Pyramid::Patches(p) => bindings! { patches: &p.patches },
         };
-        let map = bindings! { depth_map: &map.texture, penumbra: &self.buffer };
+        let map = bindings! { depth_map: &map.texture, penumbra: &self.buffer, tiles: &self.tiles };
         let set = frame.bindings(&[map.as_slice(), nodes.as_slice()].concat());
         let [width, height] = frame.geometry.size;
         recorder.compute_pass("pixel classification", |gpu, pass| {
@@ -82,6 +91,6 @@ impl PenumbraList {
 
     /// GPU memory by pass.
     pub fn memory(&self) -> Memory {
-        Memory::new("pixel classification", self.buffer.size())
+        Memory::new("pixel classification", self.buffer.size() + self.tiles.size())
     }
 }

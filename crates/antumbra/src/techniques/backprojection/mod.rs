@@ -5,7 +5,7 @@ use crate::frame::FrameUniform;
 use crate::passes::{
     classify::{PenumbraList, Pyramid}, depth_layers::DepthLayers, patch_pyramid::PatchPyramid, sparse::SparsePixels,
 };
-use crate::pipeline::ComputePipeline;
+use crate::pipeline::{Binding, ComputePipeline};
 use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
 use crate::shader::ShaderKey;
@@ -33,6 +33,8 @@ gpu_struct! {
 /// Shadow of a rectangular light by patches that are projected back to it.
 pub struct Backprojection {
     settings: BackprojectionSettings,
+    /// True if a workgroup looks at a tile of the picture, false if at any 64 pixels.
+    by_tiles: bool,
     gather: Arc<ComputePipeline>,
     uniform: wgpu::Buffer,
     map: Option<DepthLayers>,
@@ -55,17 +57,18 @@ impl Describe for Backprojection {
     }
 
     fn make(gpu: &Gpu, settings: BackprojectionSettings) -> Result<Self, Error> {
-        Backprojection::with_gather(gpu, settings, "techniques::backprojection::gather")
+        Backprojection::with_gather(gpu, settings, "techniques::backprojection::gather", false)
     }
 }
 
 impl Backprojection {
     /// With the shader that gathers the patches.
-    pub(crate) fn with_gather(gpu: &Gpu, settings: BackprojectionSettings, gather: &'static str) -> Result<Self, Error> {
+    pub(crate) fn with_gather(gpu: &Gpu, settings: BackprojectionSettings, gather: &'static str, by_tiles: bool) -> Result<Self, Error> {
         let key = ShaderKey::new(gather)
             .feature(settings.bits.feature(), true)
             .feature("sum", settings.join == Join::Sum)
             .feature("flat", !settings.gaps_filled)
+            .feature("sparse", settings.spacing != Spacing::S1)
             .with::<FrameUniform>()
             .with::<BackprojectionUniform>();
         let value = BackprojectionUniform { layers: settings.layers, leaf: 1.0 / settings.window, spacing: settings.spacing.pixels() as f32 };
@@ -73,6 +76,7 @@ impl Backprojection {
             gather: gpu.compute_pipeline(&key, "gather")?,
             uniform: uniform(gpu, "backprojection", &value),
             settings,
+            by_tiles,
             map: None,
             patches: None,
             list: None,
@@ -90,17 +94,26 @@ impl Technique for Backprojection {
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
         patches.record(recorder, maps, frame.frustum.near)?;
         list.record(recorder, frame, map, Pyramid::Patches(patches))?;
-        let sparse =
-            SparsePixels::ensure(&mut self.sparse, gpu, frame.geometry.size, self.settings.spacing.pixels());
-        sparse.record(recorder, frame, list, |recorder, chosen| {
-            let set = frame.bindings(bindings! {
+        let look = |recorder: &mut Recorder, list: &PenumbraList, sharpness: &[Binding]| {
+            let set = bindings! {
                 depth_map: &map.texture,
-                penumbra_pixels: &chosen.buffer,
+                penumbra_pixels: &list.buffer,
+                penumbra_tiles: &list.tiles,
                 backprojection: &self.uniform,
                 patches: &patches.patches,
-                sharpness: &sparse.sharpness,
-            });
-            recorder.compute("back-projection", &self.gather, &set, Work::Indirect(&chosen.buffer, 0));
+            };
+            let set = frame.bindings(&[set, sharpness].concat());
+            let work = if self.by_tiles { &list.tiles } else { &list.buffer };
+            recorder.compute("back-projection", &self.gather, &set, Work::Indirect(work, 0));
+        };
+        let spacing = self.settings.spacing.pixels();
+        if spacing == 1 {
+            look(recorder, list, &[]);
+            return Ok(());
+        }
+        let sparse = SparsePixels::ensure(&mut self.sparse, gpu, frame.geometry.size, spacing);
+        sparse.record(recorder, frame, list, |recorder, chosen| {
+            look(recorder, chosen, bindings! { sharpness: &sparse.sharpness });
         })
     }
 

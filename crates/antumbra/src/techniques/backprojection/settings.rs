@@ -109,7 +109,7 @@ impl Spacing {
 }
 
 impl Bits {
-    /// The feature of `mask.wesl` that stands for it.
+    /// The feature of `mask.wesl` that stands for it; 256 is what it has without one.
     pub(crate) fn feature(self) -> &'static str {
         match self {
             Bits::B64 => "bits64",

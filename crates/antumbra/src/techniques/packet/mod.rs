@@ -32,7 +32,7 @@ impl Describe for Packet {
                 expected: "a packet is of pixels beside each other: leave it at 1, or take `backprojection`".to_owned(),
             }));
         }
-        Backprojection::with_gather(gpu, settings, "techniques::packet::packet").map(Packet)
+        Backprojection::with_gather(gpu, settings, "techniques::packet::packet", true).map(Packet)
     }
 }
 
