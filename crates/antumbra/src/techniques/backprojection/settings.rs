@@ -65,7 +65,7 @@ crate::settings! {
         /// Surfaces behind each other that each texel of the map keeps.
         layers: u32 = 2, Kind::Integer { min: 1, max: 4 };
         /// A surface is no layer of its own if the light moves it by fewer texels than this against that before it.
-        apart: f32 = 2.0, Kind::Number { min: 0.0, max: 1000.0 };
+        apart: f32 = 4.0, Kind::Number { min: 0.0, max: 1000.0 };
         /// Patches a side that the light is resolved into at least.
         window: f32 = 4.0, Kind::Number { min: 1.0, max: 256.0 };
         /// Pixels between those that are looked at first; the others follow where these do not tell them. 1 looks at all.
@@ -84,11 +84,10 @@ impl BackprojectionSettings {
     pub fn of_quality(quality: Quality) -> BackprojectionSettings {
         let balanced = BackprojectionSettings { quality, ..Default::default() };
         match quality {
-            Quality::Fast => BackprojectionSettings { map: 1024, apart: 4.0, window: 2.0, ..balanced },
+            Quality::Fast => BackprojectionSettings { map: 1024, window: 2.0, ..balanced },
             Quality::Balanced => balanced,
             Quality::Best => BackprojectionSettings {
                 layers: 4,
-                apart: 1.0,
                 window: 32.0,
                 spacing: Spacing::S1,
                 bits: Bits::B1024,
