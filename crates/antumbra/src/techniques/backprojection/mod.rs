@@ -24,7 +24,7 @@ gpu_struct! {
         layers: u32,
         /// Smallest width of a patch on the light, as a part of the light's.
         leaf: f32,
-
+       
     }
 }
 
@@ -59,11 +59,7 @@ impl Describe for Backprojection {
 
 impl Backprojection {
     /// With the shader that gathers the patches.
-    pub(crate) fn with_gather(
-        gpu: &Gpu,
-        settings: BackprojectionSettings,
-        gather: &'static str,
-    ) -> Result<Self, Error> {
+    pub(crate) fn with_gather(gpu: &Gpu, settings: BackprojectionSettings, gather: &'static str) -> Result<Self, Error> {
         let key = ShaderKey::new(gather)
             .feature(settings.bits.feature(), true)
             .feature("sum", settings.join == Join::Sum)
@@ -86,14 +82,7 @@ impl Backprojection {
 impl Technique for Backprojection {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         let gpu = recorder.gpu;
-        let maps = DepthLayers::of_light(
-            &mut self.map,
-            recorder,
-            frame,
-            self.settings.map,
-            self.settings.layers,
-            self.settings.apart,
-        )?;
+        let maps = DepthLayers::of_light(&mut self.map, recorder, frame, self.settings.map, self.settings.layers, self.settings.apart)?;
         let map = &maps.nearest;
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);

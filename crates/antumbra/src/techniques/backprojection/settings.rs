@@ -70,9 +70,7 @@ impl BackprojectionSettings {
         match quality {
             Quality::Fast => BackprojectionSettings { window: 2.0, ..balanced },
             Quality::Balanced => balanced,
-            Quality::Best => {
-                BackprojectionSettings { map: 2048, layers: 4, window: 32.0, bits: Bits::B1024, ..balanced }
-            }
+            Quality::Best => BackprojectionSettings { map: 2048, layers: 4, window: 32.0, bits: Bits::B1024, ..balanced },
         }
     }
 

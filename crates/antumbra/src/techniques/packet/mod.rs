@@ -11,8 +11,12 @@ pub struct Packet(Backprojection);
 
 impl Describe for Packet {
     type Settings = BackprojectionSettings;
-    const ABOUT: About =
-        About { name: "packet", title: "Layered back-projection by packets", source: "Yang 2009", summary: "x" };
+    const ABOUT: About = About {
+        name: "packet",
+        title: "Layered back-projection by packets",
+        source: "Yang 2009",
+        summary: "x",
+    };
 
     fn defaults(given: &Map<String, Value>) -> BackprojectionSettings {
         BackprojectionSettings::suited_to(given)
