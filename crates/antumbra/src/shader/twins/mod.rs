@@ -6,6 +6,8 @@
 mod frame;
 mod horizon;
 mod layers;
+mod mask;
+mod patches;
 
 use crate::recorder::Work;
 use crate::resource::{buffer_of, read_buffer, storage_buffer};
@@ -27,6 +29,17 @@ fn gpu() -> &'static Gpu {
 /// Runs `fn evaluate(at: u32, to: u32)` of a WESL text for every input of `stride` numbers: it reads `input[at]` and on,
 /// writes `output[to]` and on.
 fn evaluate(text: &str, input: &[f32], stride: usize, outputs: usize) -> Vec<Vec<f32>> {
+    evaluate_variant(text, &[], input, stride, outputs)
+}
+
+/// [`evaluate`] with features on.
+fn evaluate_variant(
+    text: &str,
+    features: &[&'static str],
+    input: &[f32],
+    stride: usize,
+    outputs: usize,
+) -> Vec<Vec<f32>> {
     let count = input.len() / stride;
     let kernel = format!(
         "{text}
@@ -37,7 +50,7 @@ fn evaluate(text: &str, input: &[f32], stride: usize, outputs: usize) -> Vec<Vec
         }}"
     );
     let gpu = gpu();
-    let key = ShaderKey { structs: kernel, ..ShaderKey::new("host") };
+    let key = ShaderKey { structs: kernel, features: features.to_vec(), ..ShaderKey::new("host") };
     let pipeline = gpu.compute_pipeline(&key, "each").unwrap_or_else(|e| panic!("{e}"));
     let source = buffer_of(gpu, "input", bytemuck::cast_slice(input), wgpu::BufferUsages::STORAGE);
     let target = storage_buffer(gpu, "output", (count * outputs * 4) as u64);
