@@ -14,6 +14,14 @@ pub fn ms(value: f64) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
+/// A ratio, two significant digits.
+pub fn ratio(value: f64) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    format!("{value:.*}", if value < 0.995 { 2 } else { usize::from(value < 9.95) })
+}
+
 /// Megabytes (10⁶ bytes).
 pub fn megabytes(bytes: u64) -> String {
     let mb = bytes as f64 * 1e-6;
@@ -59,6 +67,7 @@ mod tests {
     #[test]
     fn numbers_read_well() {
         assert_eq!([ms(0.0), ms(0.0421), ms(1.234), ms(12.34), ms(1234.5)], ["0.00", "0.042", "1.23", "12.3", "1234"]);
+        assert_eq!([0.656, 0.999, 1.0, 5.52, 9.96, 17.3].map(ratio), ["0.66", "1.0", "1.0", "5.5", "10", "17"]);
         assert_eq!([count(7), count(1234), count(2_000_000)], ["7", "1\u{202f}234", "2\u{202f}000\u{202f}000"]);
         assert_eq!([megabytes(0), megabytes(9_000), megabytes(16_777_216)], ["0", "< 0.1", "16.8"]);
         assert_eq!([seconds(1.24), seconds(42.4), seconds(83.0)], ["1.2 s", "42 s", "1 min 23 s"]);

@@ -167,7 +167,7 @@ fn arguments() -> BenchArgs {
 fn a_trial_measures_each_technique_and_the_penumbra() {
     let args = arguments();
     let gpu = crate::setup::gpu(&args.gpu, [1, 1]).unwrap();
-    let lab = Lab { args: &args, gpu: &gpu };
+    let lab = Lab { args: &args, gpu: &gpu, scenes: &[] };
     let specs = ["hard:map=64", "pcss:map=256"].map(|text| text.parse().unwrap());
     let measured = |scene: &Scene| {
         let truth = &args.truth;
