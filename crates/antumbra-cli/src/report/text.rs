@@ -44,8 +44,8 @@ pub fn count(value: u64) -> String {
 pub fn seconds(value: f64) -> String {
     match value {
         v if v < 10.0 => format!("{v:.1} s"),
-        v if v < 60.0 => format!("{v:.0} s"),
-        v => format!("{} min {:.0} s", (v / 60.0).floor(), v % 60.0),
+        v if v < 59.5 => format!("{v:.0} s"),
+        v => format!("{} min {:.0} s", (v.round() / 60.0).floor(), v.round() % 60.0),
     }
 }
 
@@ -71,6 +71,7 @@ mod tests {
         assert_eq!([count(7), count(1234), count(2_000_000)], ["7", "1\u{202f}234", "2\u{202f}000\u{202f}000"]);
         assert_eq!([megabytes(0), megabytes(9_000), megabytes(16_777_216)], ["0", "< 0.1", "16.8"]);
         assert_eq!([seconds(1.24), seconds(42.4), seconds(83.0)], ["1.2 s", "42 s", "1 min 23 s"]);
+        assert_eq!([seconds(59.4), seconds(59.7), seconds(119.8)], ["59 s", "1 min 0 s", "2 min 0 s"]);
         assert_eq!([slug("pcf:map=512,format=x/../y"), slug("hard")], ["pcf-map-512-format-x-..-y", "hard"]);
     }
 }

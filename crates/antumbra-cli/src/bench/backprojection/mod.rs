@@ -30,8 +30,8 @@ const SCENES: [(&str, &str); 6] = [
     ("fence", "fence"),
     ("layers", "layers"),
     ("plant", "plant"),
-    ("spheres", "spheres:segments=40"),
-    ("bumpy", "bumpy:side=128"),
+    ("spheres", "spheres:segments=32"),
+    ("bumpy", "bumpy:side=96"),
     ("atrium", "atrium:bays=3"),
 ];
 /// Scenes whose light grows. The first has one occluder, at a distance that is known.
