@@ -219,7 +219,7 @@ fn plot_of(report: &Report, labels: &[String]) -> Markup {
     };
     let points: Vec<_> = report.entries.iter().zip(labels).enumerate().map(point).collect();
     html! {
-        div.scroll { (plot::scatter(&points, &[])) }
+        (plot::scatter(&points, &[]))
         @if points.len() > 1 { p.hint { "Filled: nothing else is both faster and nearer to the truth." } }
     }
 }

@@ -111,29 +111,29 @@ pub fn scatter(points: &[Point], groups: &[&str]) -> Markup {
     let y = Axis::upwards(points.iter().map(|p| p.error), ROOM);
     let dots: Vec<_> = points.iter().map(|p| (x.place(p.ms), y.place(p.error))).collect();
     let best: Vec<bool> = points.iter().map(|p| is_best(p, points)).collect();
-    let shown = |(p, best): (&'_ Point, &bool)| p.labelled || *best;
-    let shown: Vec<bool> = points.iter().zip(&best).map(shown).collect();
+    let shown: Vec<bool> = points.iter().zip(&best).map(|(point, best)| point.labelled || *best).collect();
     // A label that is not shown takes no room.
     let labels: Vec<_> =
         points.iter().zip(&shown).map(|(p, shown)| if *shown { p.label.as_str() } else { "" }).collect();
     let areas = place_labels(&dots, &labels);
     let titles = Titles { x: "GPU milliseconds a frame", y: "average error", less_is_better: true };
+    let drawn = |i: usize| {
+        let label = shown[i].then(|| label(&points[i], &areas[i]));
+        let drawn = html! { (dot(&points[i], dots[i], best[i])) @if let Some(label) = label { (label) } };
+        match &points[i].link {
+            Some(link) => html! { a href=(link) { (drawn) } },
+            None => html! { g { (drawn) } },
+        }
+    };
     html! {
         (legend(groups))
-        svg.plot viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img"
-            aria-label="Average error against GPU milliseconds, both logarithmic; lower left is better" {
-            (grid(&x, &y, &titles))
-            polyline.front points=(front(&dots, &best)) {}
-            @for ((dot, area), _) in dots.iter().zip(&areas).zip(&shown).filter(|(_, shown)| **shown) {
-                (leader(*dot, area))
-            }
-            @for (i, point) in points.iter().enumerate() {
-                @let drawn = dot(point, dots[i], best[i]);
-                @let drawn = html! { (drawn) @if shown[i] { (label(point, &areas[i])) } };
-                @match &point.link {
-                    Some(link) => a href=(link) { (drawn) },
-                    None => g { (drawn) },
-                }
+        div.scroll {
+            svg.plot viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img"
+                aria-label="Average error against GPU milliseconds, both logarithmic; lower left is better" {
+                (grid(&x, &y, &titles))
+                polyline.front points=(front(&dots, &best)) {}
+                @for i in (0..points.len()).filter(|i| shown[*i]) { (leader(dots[i], &areas[i])) }
+                @for i in 0..points.len() { (drawn(i)) }
             }
         }
     }

@@ -117,7 +117,7 @@ const LIGHT_HEADS: [(&str, &str); 7] = [
     ("at", "Size of the light there, in distances of the occluder"),
     ("largest of a pixel", "Largest |error| of any pixel at any size"),
     ("at", "Size of the light there, in distances of the occluder"),
-    ("99 %", "Largest of the |errors| that 99 % of the pixels of a size do not exceed"),
+    ("p99", "Largest of the |errors| that 99 % of the pixels of a size do not exceed"),
 ];
 
 /// What becomes of the error as the light grows; a sweep a scene.

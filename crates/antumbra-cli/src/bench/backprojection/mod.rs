@@ -92,8 +92,7 @@ impl Plan {
         let specs = kit::specs(of_maps.collect())?;
         jobs.push(Job { name: "maps".into(), scene: builtin::build(PLAIN)?, size: half, specs });
         for side in SIDES {
-            let size = scaled(size, side);
-            let name = format!("{PLAIN}, {} x {}", size[0], size[1]);
+            let (size, name) = (scaled(size, side), format!("picture {}/{}", side.0, side.1));
             jobs.push(Job { name, scene: builtin::build(PLAIN)?, size, specs: texts(&cost::DRAWN)? });
         }
         for trees in TREES {

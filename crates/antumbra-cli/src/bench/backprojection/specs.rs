@@ -19,7 +19,7 @@ pub const FIXED: [u32; 3] = [16, 64, 256];
 /// Settings that are changed around [`BALANCED`], with their values in order.
 pub const SWEEPS: [(&str, &[&str]); 6] = [
     ("layers", &["1", "2", "4"]),
-    ("window", &["2", "4", "8", "16", "32"]),
+    ("window", &["2", "4", "8", "16"]),
     ("bits", &["64", "256", "1024"]),
     ("map", &["512", "1024", "2048"]),
     ("join", &["union", "sum"]),

@@ -74,7 +74,7 @@ const TARGETS: [Target; 9] = {
 const HEADS: [(&str, &str); 6] = [
     ("technique", "Name and settings"),
     ("what", "What is measured"),
-    ("scenes", "Over which scenes, those that were there"),
+    ("scenes", "Which scene, or how many of the four were there"),
     ("measured", "Over all of them; in brackets the least and the most of a scene"),
     ("target", "What it is meant to be"),
     ("met", "Whether it is; open where fixed sampling was not measured with as many or as few maps"),
@@ -86,7 +86,8 @@ pub fn part(scenes: &[Trial]) -> (Part, String) {
     let of = |wanted| rows.iter().filter(move |(_, verdict)| *verdict == wanted);
     let met = format!("{} of {} targets are met", of(Verdict::Met).count(), TARGETS.len());
     let list = |wanted, what: &str| {
-        let of: Vec<String> = of(wanted).map(|(row, _)| format!("{} {} ({})", row[0], row[1], row[2])).collect();
+        let of: Vec<String> =
+            of(wanted).map(|(row, _)| format!("{} {} ({})", preset(&row[0]), row[1], row[2])).collect();
         if of.is_empty() { String::new() } else { format!("; {what}: {}", of.join(", ")) }
     };
     let lead = [
@@ -97,11 +98,16 @@ pub fn part(scenes: &[Trial]) -> (Part, String) {
         format!(".{}", without_bunny(scenes)),
     ];
     let groups = vec![Group { title: String::new(), rows: rows.iter().map(|(row, _)| row.clone()).collect() }];
-    let text = "Milliseconds are divided by those of PCSS at its defaults in the same scenes and the same run. Fixed \
-                sampling of the same error is interpolated between the numbers of maps that were measured, both mean \
+    let text = "Over four scenes, fence, layers, plant and the bunny, or each by itself. Milliseconds are divided by those of PCSS at its defaults in the same scenes and the same run. Fixed \
+                sampling is taken at the same error, interpolated between the numbers of maps that were measured, both mean \
                 error and mean milliseconds logarithmic.";
     let shown = vec![Shown::Table(Table { heads: HEADS.to_vec(), groups })];
     (Part { title: "Targets".into(), text: text.into(), shown }, lead.concat())
+}
+
+/// What follows `quality=`.
+fn preset(spec: &str) -> &str {
+    spec.split_once('=').map_or(spec, |(_, preset)| preset)
 }
 
 fn without_bunny(scenes: &[Trial]) -> &'static str {
@@ -131,8 +137,11 @@ impl Target {
             Some(Measured::AtLeast(value)) => format!("≥ {}", number(value)),
             Some(Measured::AtMost(value)) => format!("≤ {}", number(value)),
         };
-        let names: Vec<&str> = trials.iter().map(|trial| trial.name.as_str()).collect();
-        let scenes = if names.is_empty() { format!("no {}", self.scenes.join(", ")) } else { names.join(", ") };
+        let scenes = match self.scenes {
+            [scene] if trials.is_empty() => format!("no {scene}"),
+            [scene] => (*scene).to_owned(),
+            several => format!("{} of {}", trials.len(), several.len()),
+        };
         let target = match self.limit {
             Limit::AtMost(value) => format!("≤ {}", self.what.target(value)),
             Limit::AtLeast(value) => format!("≥ {}", self.what.target(value)),
@@ -152,7 +161,7 @@ impl Target {
         let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
         match values.len() {
             0 | 1 => String::new(),
-            _ => format!(" ({} to {})", self.what.text(low), self.what.text(high)),
+            _ => format!(" ({}–{})", self.what.text(low), self.what.text(high)),
         }
     }
 }
@@ -161,8 +170,8 @@ impl What {
     fn name(self) -> &'static str {
         match self {
             What::Error => "average error",
-            What::OverPcss => "ms ÷ those of pcss",
-            What::UnderFixed => "ms of fixed sampling of the same error ÷ these",
+            What::OverPcss => "ms ÷ pcss",
+            What::UnderFixed => "ms of fixed ÷ own",
         }
     }
 
@@ -283,11 +292,11 @@ mod tests {
         let scenes = [trial("fence", runs(8.0)), trial("plant", runs(14.0))];
         let (cells, verdict) = TARGETS[0].row(&scenes);
         assert_eq!(verdict, Verdict::Missed);
-        assert_eq!(cells[1..], ["ms ÷ those of pcss", "fence, plant", "1.1 (0.80 to 1.4)", "≤ 1", "no"]);
+        assert_eq!(cells[1..], ["ms ÷ pcss", "2 of 4", "1.1 (0.80–1.4)", "≤ 1", "no"]);
         let (part, lead) = part(&scenes);
         let [Shown::Table(table)] = &part.shown[..] else { panic!("a table") };
         assert!(table.groups[0].rows.iter().all(|row| row.len() == HEADS.len()));
-        assert!(lead.contains("bunny was not given") && lead.contains(FAST), "{lead}");
+        assert!(lead.contains("bunny was not given") && lead.contains("missed: fast ms ÷ pcss (2 of 4)"), "{lead}");
         let (_, lead) = super::part(&[trial("stanford-Bunny", runs(8.0))]);
         assert!(!lead.contains("not given"), "{lead}");
     }

@@ -19,7 +19,7 @@ pub fn html(context: &Context, findings: &Findings) -> Result<String, ReportErro
                         Shown::Pictures(of) => (pictures_of(findings, of, &thumbnails)),
                         Shown::Table(table) => (drawn_table(table)),
                         Shown::Lines(curves) => (lines::plot(curves)),
-                        Shown::Scatter(of) => div.scroll { (plot::scatter(&of.points, &of.groups)) },
+                        Shown::Scatter(of) => (plot::scatter(&of.points, &of.groups)),
                     }
                 }
             }
