@@ -19,7 +19,7 @@ pub const SUITE: Suite = Suite {
     name: "backprojection",
     title: "Layered back-projection",
     source: "Guennebaud 2006, 2007",
-    summary: "error against milliseconds by setting, beside PCSS and fixed sampling; takes --scene",
+    summary: "its settings beside PCSS and fixed sampling",
     scenes: true,
     run,
 };
