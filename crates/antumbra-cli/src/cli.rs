@@ -100,7 +100,11 @@ pub struct BenchArgs {
     /// Folder of the results, made if need be: for each suite a page, a table in Markdown, JSON and CSV
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-    /// Size of the pictures in pixels [default: the paper's]
+    /// Another scene to measure, named as for `render`, any number of times; for `backprojection`, whose targets want
+    /// the Stanford bunny: a model with "bunny" in its file's name
+    #[arg(long = "scene", value_name = "SCENE")]
+    pub scenes: Vec<String>,
+    /// Size of the pictures in pixels [default: the suite's]
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
     #[command(flatten)]

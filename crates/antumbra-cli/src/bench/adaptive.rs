@@ -1,12 +1,11 @@
 //! Adaptive sampling of the light against a fixed number of samples [Schwärzler 2009, section 5].
 
 use super::Suite;
-use super::kit::{Findings, Group, Lab, Order, Part, Ratio, Run, Shown, Table, Trial};
+use super::kit::{Findings, Group, Lab, Order, Part, Ratio, Run, Shown, Table, Trial, specs};
 use crate::cli::TruthArgs;
 use crate::error::CliError;
 use crate::report::lines::{Curve, Guide, Lines, Spot};
 use crate::report::text;
-use antumbra::{Error, Spec};
 use antumbra_scene::{Scene, builtin};
 
 pub const SUITE: Suite = Suite {
@@ -14,6 +13,7 @@ pub const SUITE: Suite = Suite {
     title: "Adaptive sampling of the light",
     source: "Schwärzler 2009",
     summary: "few, well placed shadow maps against 81, 128 and 256 fixed ones",
+    scenes: false,
     run,
 };
 
@@ -123,10 +123,6 @@ fn run(lab: &Lab) -> Result<Findings, CliError> {
     Ok(findings(trials))
 }
 
-fn specs(texts: Vec<String>) -> Result<Vec<Spec>, CliError> {
-    Ok(texts.iter().map(|text| text.parse::<Spec>()).collect::<Result<_, _>>().map_err(Error::from)?)
-}
-
 fn rows() -> Vec<String> {
     ROWS.map(str::to_owned).to_vec()
 }
@@ -195,15 +191,10 @@ fn lead(scenes: &[Trial]) -> String {
     let said = scenes.iter().zip(&SETUPS).filter_map(|(trial, setup)| {
         let (own, base) = (trial.run(ROWS[0])?, trial.run(BASE)?);
         let paper = setup.paper.map_or(String::new(), |p| format!(" (paper: {p})"));
-        let (maps, speed) = (own.count("maps"), times(own.speed_over(base)));
+        let (maps, speed) = (own.count("maps"), text::ratio(own.speed_over(base)));
         Some(format!("{maps} maps {}, {speed} times as fast{paper}", setup.place))
     });
     format!("Adaptive sampling at its defaults, beside 128 fixed samples: {}.", said.collect::<Vec<_>>().join("; "))
-}
-
-/// A ratio, two significant digits.
-fn times(ratio: f64) -> String {
-    format!("{ratio:.*}", if ratio < 0.995 { 2 } else { usize::from(ratio < 9.95) })
 }
 
 const HEADS: [(&str, &str); 9] = [
@@ -220,14 +211,7 @@ const HEADS: [(&str, &str); 9] = [
 
 fn scenes_part(scenes: &[Trial]) -> Part {
     let groups = scenes.iter().zip(&SETUPS).map(|(trial, setup)| Group {
-        title: format!(
-            "{}: {}, {} triangles, {:.1} % penumbra, truth ± {}",
-            trial.name,
-            trial.scene,
-            text::count(trial.triangles as u64),
-            100.0 * trial.penumbra,
-            text::figure(trial.truth_error)
-        ),
+        title: trial.heading(),
         rows: trial.runs.iter().map(|run| row(trial, setup, run)).collect(),
     });
     let table = Table { heads: HEADS.to_vec(), groups: groups.collect() };
@@ -237,14 +221,10 @@ fn scenes_part(scenes: &[Trial]) -> Part {
             "{}, maps of 512 x 512. Penumbra is the part of the pixels whose true visibility is over 0.01 and under \
              0.99. Speed is relative to 128 fixed samples, in the same scene and the same run; the paper's column has \
              its text and figure 7: 5.5 with 7 maps, about 2 with up to 50, 0.66 at worst.",
-            pixels(scenes.first())
+            scenes.first().map_or(String::new(), Trial::pixels)
         ),
         shown: vec![Shown::Pictures((0..scenes.len()).collect()), Shown::Table(table)],
     }
-}
-
-fn pixels(trial: Option<&Trial>) -> String {
-    trial.map_or(String::new(), |t| format!("{} x {} pixels", t.width, t.height))
 }
 
 fn row(trial: &Trial, setup: &Setup, run: &Run) -> Vec<String> {
@@ -258,7 +238,7 @@ fn row(trial: &Trial, setup: &Setup, run: &Run) -> Vec<String> {
         text::megabytes(run.cost.total_bytes),
         text::figure(run.figures.average_error),
         text::figure(run.figures.rmse),
-        against(|run, base| times(run.speed_over(base))),
+        against(|run, base| text::ratio(run.speed_over(base))),
         paper.map_or_else(|| "–".to_owned(), |p| p.to_string()),
         against(|run, base| format!("{:+.4}", run.figures.average_error - base.figures.average_error)),
     ]
@@ -277,7 +257,7 @@ fn sweep_part(trial: &Trial, what: &str, criterion: &str, own: fn(u32) -> Vec<St
         text: format!(
             "The scene of the medium penumbra at half the size each way, {}. Along a line adaptive-sampling with \
              criterion={criterion} has {} = {}, and uniform-sampling {} samples; from left to right.",
-            pixels(Some(trial)),
+            trial.pixels(),
             what.to_lowercase(),
             values.join(", "),
             FIXED.map(|n| n.to_string()).join(", ")
@@ -324,7 +304,7 @@ fn patterns_part(trial: &Trial) -> Part {
              is left is the error of the light's samples. Points at random would follow n^-1/2, points that keep their \
              distances n^-3/4.",
             trial.scene,
-            pixels(Some(trial)),
+            trial.pixels(),
             text::count(trial.light_samples.into())
         ),
         shown: vec![Shown::Lines(Lines {
@@ -378,10 +358,5 @@ mod tests {
         let [Shown::Lines(lines)] = &part.shown[..] else { panic!("a plot") };
         let points: Vec<_> = lines.curves.iter().map(|c| c.points.len()).collect();
         assert_eq!(points, [5, 5, 5, 5, 8, 8, 8, 8]);
-    }
-
-    #[test]
-    fn ratios_have_two_digits() {
-        assert_eq!([0.656, 0.999, 1.0, 5.52, 9.96, 17.3].map(times), ["0.66", "1.0", "1.0", "5.5", "10", "17"]);
     }
 }

@@ -3,6 +3,7 @@
 //! A suite is one file here and one line in [`SUITES`]: the command line, its help and the files are made from that.
 
 mod adaptive;
+mod backprojection;
 pub mod kit;
 
 use crate::error::CliError;
@@ -10,7 +11,7 @@ use antumbra::settings::nearest;
 use kit::{Findings, Lab};
 
 /// Every suite.
-pub const SUITES: &[Suite] = &[adaptive::SUITE];
+pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE];
 
 /// What is measured of a paper.
 #[derive(Debug)]
@@ -23,6 +24,8 @@ pub struct Suite {
     pub source: &'static str,
     /// One line for the help.
     pub summary: &'static str,
+    /// Whether it measures the command line's scenes beside its own.
+    pub scenes: bool,
     /// Measures.
     pub run: fn(&Lab) -> Result<Findings, CliError>,
 }
@@ -38,7 +41,7 @@ pub fn find(name: &str) -> Result<&'static Suite, String> {
 
 /// The suites with a line each, for the help.
 pub fn list() -> String {
-    let lines = SUITES.iter().map(|s| format!("\n  {:<12} {} [{}]", s.name, s.summary, s.source));
+    let lines = SUITES.iter().map(|s| format!("\n  {:<15} {} [{}]", s.name, s.summary, s.source));
     format!("Suites:{}", lines.collect::<String>())
 }
 

@@ -10,7 +10,7 @@ pub mod frame;
 pub mod lines;
 mod page;
 pub mod pictures;
-mod plot;
+pub mod plot;
 pub mod text;
 
 #[cfg(test)]
@@ -23,6 +23,7 @@ use serde::Serialize;
 
 pub use files::{place, write};
 pub use lines::Lines;
+pub use plot::Point;
 
 /// Everything that a comparison has found. Pictures are row-major with row 0 on top.
 #[derive(Clone, Debug, Serialize)]

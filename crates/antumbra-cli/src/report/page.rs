@@ -206,11 +206,20 @@ fn table(report: &Report, labels: &[String]) -> Markup {
 fn plot_of(report: &Report, labels: &[String]) -> Markup {
     let point = |(i, (entry, label)): (usize, (&Entry, &String))| {
         let Figures { average_error: error, .. } = entry.figures;
-        Point { label: label.clone(), link: format!("#t{}", i + 1), ms: entry.total_ms, error }
+        let link = Some(format!("#t{}", i + 1));
+        Point {
+            label: label.clone(),
+            name: label.clone(),
+            labelled: true,
+            link,
+            group: None,
+            ms: entry.total_ms,
+            error,
+        }
     };
     let points: Vec<_> = report.entries.iter().zip(labels).enumerate().map(point).collect();
     html! {
-        div.scroll { (plot::scatter(&points)) }
+        (plot::scatter(&points, &[]))
         @if points.len() > 1 { p.hint { "Filled: nothing else is both faster and nearer to the truth." } }
     }
 }

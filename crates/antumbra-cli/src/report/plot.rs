@@ -1,9 +1,9 @@
-//! Error against milliseconds, one point a technique; the points are links.
+//! Error against milliseconds, one point a technique; the points may be links and of several groups.
 
 use maud::{Markup, html};
 
 use super::axes::{Axis, BOTTOM, HEIGHT, LEFT, TOP, Titles, WIDTH, grid};
-use super::text;
+use super::{lines::COLORS, text};
 
 /// Width of a label's letter and height of its line, in the units above.
 const LETTER: (f64, f64) = (7.8, 16.0);
@@ -14,8 +14,14 @@ const ROOM: f64 = 0.12;
 pub struct Point {
     /// Its label.
     pub label: String,
-    /// Where the page tells more.
-    pub link: String,
+    /// Its name where there is room for it: what is told when the pointer rests on it.
+    pub name: String,
+    /// Whether its label is shown even if another point beats it.
+    pub labelled: bool,
+    /// Where the page tells more, if it does.
+    pub link: Option<String>,
+    /// The place of its group among the plot's; without groups the best are in the page's own colour.
+    pub group: Option<usize>,
     /// GPU milliseconds.
     pub ms: f64,
     /// Average error in [0, 1].
@@ -99,26 +105,59 @@ fn is_best(point: &Point, points: &[Point]) -> bool {
     !points.iter().any(beats)
 }
 
-/// The plot; points that nothing beats in both are filled and joined.
-pub fn scatter(points: &[Point]) -> Markup {
+/// The plot; points that nothing beats in both are filled and joined. Groups have the style sheet's colours in turn.
+pub fn scatter(points: &[Point], groups: &[&str]) -> Markup {
     let x = Axis::across(points.iter().map(|p| p.ms), ROOM);
     let y = Axis::upwards(points.iter().map(|p| p.error), ROOM);
     let dots: Vec<_> = points.iter().map(|p| (x.place(p.ms), y.place(p.error))).collect();
-    let labels: Vec<_> = points.iter().map(|p| p.label.as_str()).collect();
-    let areas = place_labels(&dots, &labels);
     let best: Vec<bool> = points.iter().map(|p| is_best(p, points)).collect();
+    let shown: Vec<bool> = points.iter().zip(&best).map(|(point, best)| point.labelled || *best).collect();
+    // A label that is not shown takes no room.
+    let labels: Vec<_> =
+        points.iter().zip(&shown).map(|(p, shown)| if *shown { p.label.as_str() } else { "" }).collect();
+    let areas = place_labels(&dots, &labels);
     let titles = Titles { x: "GPU milliseconds a frame", y: "average error", less_is_better: true };
+    let drawn = |i: usize| {
+        let label = shown[i].then(|| label(&points[i], &areas[i]));
+        let drawn = html! { (dot(&points[i], dots[i], best[i])) @if let Some(label) = label { (label) } };
+        match &points[i].link {
+            Some(link) => html! { a href=(link) { (drawn) } },
+            None => html! { g { (drawn) } },
+        }
+    };
     html! {
-        svg.plot viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img"
-            aria-label="Average error against GPU milliseconds, both logarithmic; lower left is better" {
-            (grid(&x, &y, &titles))
-            polyline.front points=(front(&dots, &best)) {}
-            @for (dot, area) in dots.iter().zip(&areas) { (leader(*dot, area)) }
-            @for (((point, dot), area), best) in points.iter().zip(&dots).zip(&areas).zip(&best) {
-                (drawn(point, *dot, area, *best))
+        (legend(groups))
+        div.scroll {
+            svg.plot viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img"
+                aria-label="Average error against GPU milliseconds, both logarithmic; lower left is better" {
+                (grid(&x, &y, &titles))
+                polyline.front points=(front(&dots, &best)) {}
+                @for i in (0..points.len()).filter(|i| shown[*i]) { (leader(dots[i], &areas[i])) }
+                @for i in 0..points.len() { (drawn(i)) }
             }
         }
     }
+}
+
+fn legend(groups: &[&str]) -> Markup {
+    html! {
+        @if !groups.is_empty() {
+            ul.legend {
+                @for (i, group) in groups.iter().enumerate() {
+                    li {
+                        svg.plot.key viewBox="0 0 34 12" aria-hidden="true" {
+                            circle class=(format!("dot best {}", color(i))) cx="17" cy="6" r="4" {}
+                        }
+                        (group)
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn color(group: usize) -> String {
+    format!("own c{}", group % COLORS)
 }
 
 /// The staircase from the fastest to the nearest.
@@ -147,15 +186,19 @@ fn leader((x, y): (f64, f64), area: &Area) -> Markup {
     }
 }
 
-fn drawn(point: &Point, (x, y): (f64, f64), area: &Area, best: bool) -> Markup {
-    let (cx, cy) = ((area.0 + area.2) / 2.0, (area.1 + area.3) / 2.0);
-    let name = if best { "dot best" } else { "dot" };
+fn dot(point: &Point, (x, y): (f64, f64), best: bool) -> Markup {
+    let best = if best { " best" } else { "" };
+    let class = format!("dot{best} {}", point.group.map_or(String::new(), color));
     html! {
-        a href=(point.link) {
-            title { (point.label) ": error " (text::figure(point.error)) ", " (text::ms(point.ms)) " ms" }
-            circle class=(name) cx=(format!("{x:.1}")) cy=(format!("{y:.1}")) r="6" {}
-            text.label x=(format!("{cx:.1}")) y=(format!("{:.1}", cy + 4.5)) text-anchor="middle" { (point.label) }
-        }
+        title { (point.name) ": error " (text::figure(point.error)) ", " (text::ms(point.ms)) " ms" }
+        circle class=(class.trim_end()) cx=(format!("{x:.1}")) cy=(format!("{y:.1}")) r="6" {}
+    }
+}
+
+fn label(point: &Point, area: &Area) -> Markup {
+    let (cx, cy) = ((area.0 + area.2) / 2.0, (area.1 + area.3) / 2.0);
+    html! {
+        text.label x=(format!("{cx:.1}")) y=(format!("{:.1}", cy + 4.5)) text-anchor="middle" { (point.label) }
     }
 }
 
@@ -164,7 +207,9 @@ mod tests {
     use super::*;
 
     fn point(ms: f64, error: f64) -> Point {
-        Point { label: "adaptive-sampling".into(), link: "#".into(), ms, error }
+        let name = "adaptive-sampling:map=512".into();
+        let label = "adaptive-sampling".into();
+        Point { label, name, labelled: true, link: Some("#".into()), group: None, ms, error }
     }
 
     #[test]
@@ -186,7 +231,18 @@ mod tests {
 
     #[test]
     fn zero_and_one_point_have_a_place() {
-        let svg = scatter(&[point(0.0, 0.0)]).into_string();
+        let svg = scatter(&[point(0.0, 0.0)], &[]).into_string();
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    }
+
+    #[test]
+    fn what_is_beaten_keeps_its_name_for_the_pointer() {
+        let mut points = [point(1.0, 0.1), point(2.0, 0.2)];
+        for (group, point) in points.iter_mut().enumerate() {
+            (point.labelled, point.link, point.group) = (false, None, Some(group));
+        }
+        let svg = scatter(&points, &["ours", "theirs"]).into_string();
+        assert_eq!((svg.matches("<title>").count(), svg.matches("class=\"label\"").count()), (2, 1), "{svg}");
+        assert!(svg.contains("theirs") && svg.contains("dot own c1") && !svg.contains("href"));
     }
 }

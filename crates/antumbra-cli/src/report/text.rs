@@ -14,6 +14,14 @@ pub fn ms(value: f64) -> String {
     format!("{value:.*}", decimals as usize)
 }
 
+/// A ratio, two significant digits.
+pub fn ratio(value: f64) -> String {
+    if !value.is_finite() {
+        return "–".into();
+    }
+    format!("{value:.*}", if value < 0.995 { 2 } else { usize::from(value < 9.95) })
+}
+
 /// Megabytes (10⁶ bytes).
 pub fn megabytes(bytes: u64) -> String {
     let mb = bytes as f64 * 1e-6;
@@ -36,8 +44,8 @@ pub fn count(value: u64) -> String {
 pub fn seconds(value: f64) -> String {
     match value {
         v if v < 10.0 => format!("{v:.1} s"),
-        v if v < 60.0 => format!("{v:.0} s"),
-        v => format!("{} min {:.0} s", (v / 60.0).floor(), v % 60.0),
+        v if v < 59.5 => format!("{v:.0} s"),
+        v => format!("{} min {:.0} s", (v.round() / 60.0).floor(), v.round() % 60.0),
     }
 }
 
@@ -59,9 +67,11 @@ mod tests {
     #[test]
     fn numbers_read_well() {
         assert_eq!([ms(0.0), ms(0.0421), ms(1.234), ms(12.34), ms(1234.5)], ["0.00", "0.042", "1.23", "12.3", "1234"]);
+        assert_eq!([0.656, 0.999, 1.0, 5.52, 9.96, 17.3].map(ratio), ["0.66", "1.0", "1.0", "5.5", "10", "17"]);
         assert_eq!([count(7), count(1234), count(2_000_000)], ["7", "1\u{202f}234", "2\u{202f}000\u{202f}000"]);
         assert_eq!([megabytes(0), megabytes(9_000), megabytes(16_777_216)], ["0", "< 0.1", "16.8"]);
         assert_eq!([seconds(1.24), seconds(42.4), seconds(83.0)], ["1.2 s", "42 s", "1 min 23 s"]);
+        assert_eq!([seconds(59.4), seconds(59.7), seconds(119.8)], ["59 s", "1 min 0 s", "2 min 0 s"]);
         assert_eq!([slug("pcf:map=512,format=x/../y"), slug("hard")], ["pcf-map-512-format-x-..-y", "hard"]);
     }
 }

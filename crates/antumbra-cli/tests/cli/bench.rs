@@ -6,6 +6,7 @@ use crate::{Place, check_refusal, finish};
 fn suites_are_listed() {
     let help = Place::new().succeeds("bench --help").stdout;
     assert!(help.contains("Suites:") && help.contains("adaptive") && help.contains("Schwärzler 2009"), "{help}");
+    assert!(help.contains("backprojection") && help.contains("--scene <SCENE>"), "{help}");
 }
 
 #[test]
@@ -26,6 +27,8 @@ fn wrong_values_are_refused_before_the_work() {
     place.refuses("bench adaptive -o results --size 1000000x64", 2, &["1000000 x 64"]);
     place.refuses("bench adaptive -o results --adapter no-such-adapter", 2, &["no-such-adapter"]);
     place.refuses("bench adaptive -o results --frames 0", 2, &["frames"]);
+    place.refuses("bench backprojection -o results --scene bunny.obj", 2, &["bunny.obj"]);
+    place.refuses("bench backprojection -o results --scene builtin:fnce", 2, &["fnce"]);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::Trial;
 use crate::measure::Timing;
-use crate::report::Lines;
+use crate::report::{Lines, Point};
 use serde::Serialize;
 
 /// All that a suite hands in.
@@ -35,6 +35,16 @@ pub enum Shown {
     Table(Table),
     /// Curves.
     Lines(Lines),
+    /// Error against milliseconds.
+    Scatter(Scatter),
+}
+
+/// Configurations of several groups, and which of them nothing beats.
+pub struct Scatter {
+    /// Names of the groups.
+    pub groups: Vec<&'static str>,
+    /// A point a configuration.
+    pub points: Vec<Point>,
 }
 
 /// A table. The first column has names, the others numbers.

@@ -8,11 +8,12 @@ use crate::report::text;
 use crate::truth::{self, Truth};
 use crate::{progress, setup};
 use antumbra::scene::SceneRenderer;
-use antumbra::{Gpu, Spec};
+use antumbra::{Error, Gpu, Spec};
 use antumbra_metrics::{Figures, RgbImage};
 use antumbra_scene::Scene;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// Truth between these is penumbra that a viewer can tell from light and from umbra.
 const PENUMBRA: std::ops::Range<f32> = 0.01..0.99;
@@ -23,6 +24,13 @@ pub struct Lab<'a> {
     pub args: &'a BenchArgs,
     /// What draws.
     pub gpu: &'a Gpu,
+    /// Scenes beside a suite's own.
+    pub scenes: &'a [Scene],
+}
+
+/// Reads SPECs.
+pub fn specs(texts: Vec<String>) -> Result<Vec<Spec>, CliError> {
+    Ok(texts.iter().map(|text| text.parse::<Spec>()).collect::<Result<_, _>>().map_err(Error::from)?)
 }
 
 /// What to measure.
@@ -95,6 +103,19 @@ impl Lab<'_> {
         self.args.size.map_or(own, |size| size.0)
     }
 
+    /// Measures one order after another, and says on stderr how far it is.
+    pub fn trials(&self, orders: &[Order]) -> Result<Vec<Trial>, CliError> {
+        let (all, started) = (orders.len(), Instant::now());
+        let trial = |(i, order): (usize, &Order)| {
+            let [width, height] = order.size;
+            let (name, techniques, after) =
+                (order.name, order.specs.len(), text::seconds(started.elapsed().as_secs_f64()));
+            eprintln!("{} of {all}: {name}, {width} x {height}, {techniques} techniques, after {after}", i + 1);
+            self.trial(order)
+        };
+        orders.iter().enumerate().map(trial).collect()
+    }
+
     /// Measures techniques on a scene, next to one another, and then traces what they are judged by.
     pub fn trial(&self, order: &Order) -> Result<Trial, CliError> {
         let Order { scene, size, specs, .. } = *order;
@@ -155,6 +176,23 @@ impl Trial {
     /// The run of this spec.
     pub fn run(&self, spec: &str) -> Option<&Run> {
         self.runs.iter().find(|run| run.spec == spec)
+    }
+
+    /// Size of the picture.
+    pub fn pixels(&self) -> String {
+        format!("{} x {} pixels", self.width, self.height)
+    }
+
+    /// What was drawn, above the rows of a table.
+    pub fn heading(&self) -> String {
+        format!(
+            "{}: {}, {} triangles, {:.1} % penumbra, truth ± {}",
+            self.name,
+            self.scene,
+            text::count(self.triangles as u64),
+            100.0 * self.penumbra,
+            text::figure(self.truth_error)
+        )
     }
 }
 

@@ -10,6 +10,6 @@ mod page;
 pub mod tests;
 
 pub use files::write;
-pub use findings::{Context, Findings, Group, Part, Ratio, Shown, Table};
-pub use lab::{Lab, Order, Run, Trial};
+pub use findings::{Context, Findings, Group, Part, Ratio, Scatter, Shown, Table};
+pub use lab::{Lab, Order, Run, Trial, specs};
 pub use markdown::terminal;

@@ -1,7 +1,7 @@
 //! The page of a suite.
 
 use super::{Context, Findings, Shown, Table, Trial};
-use crate::report::{ReportError, frame, lines, pictures, text};
+use crate::report::{ReportError, frame, lines, pictures, plot, text};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use maud::{Markup, html};
@@ -19,6 +19,7 @@ pub fn html(context: &Context, findings: &Findings) -> Result<String, ReportErro
                         Shown::Pictures(of) => (pictures_of(findings, of, &thumbnails)),
                         Shown::Table(table) => (drawn_table(table)),
                         Shown::Lines(curves) => (lines::plot(curves)),
+                        Shown::Scatter(of) => (plot::scatter(&of.points, &of.groups)),
                     }
                 }
             }

@@ -3,8 +3,8 @@
 use super::*;
 use crate::cli::{BenchArgs, Cli, Command};
 use crate::measure::{Cost, Timing};
-use crate::report::Lines;
 use crate::report::lines::{Curve, Spot};
+use crate::report::{Lines, Point};
 use antumbra_metrics::{Image, RgbImage, figures};
 use antumbra_scene::Scene;
 use clap::Parser;
@@ -72,7 +72,17 @@ fn findings() -> Findings {
         paper: Some(5.5),
         ours: runs[0].speed_over(&runs[1]),
     };
-    let shown = vec![Shown::Pictures(vec![0, 9]), Shown::Table(table), Shown::Lines(lines)];
+    let point = Point {
+        label: "pcf".into(),
+        name: "pcf:map=512".into(),
+        labelled: false,
+        link: None,
+        group: Some(0),
+        ms: 4.0,
+        error: 0.1,
+    };
+    let scatter = Shown::Scatter(Scatter { groups: vec!["a group"], points: vec![point] });
+    let shown = vec![Shown::Pictures(vec![0, 9]), Shown::Table(table), Shown::Lines(lines), scatter];
     let part = Part { title: "A part".into(), text: "What it shows.".into(), shown };
     let trials = vec![trial("a_scene", runs)];
     Findings { lead: "It is so.".into(), parts: vec![part], ratios: vec![ratio], trials }
@@ -104,7 +114,9 @@ fn the_page_needs_nothing_from_outside_and_escapes_what_it_is_given() {
     assert!(page.contains("A &lt;made-up&gt; suite") && page.contains("GPU timestamps"));
     assert!(page.contains("say nothing about a GPU") && page.contains("antumbra bench made-up -o results"));
     assert_eq!(page.matches("data:image/png;base64,").count(), 1);
-    assert!(page.contains("<title>a point</title>"));
+    assert!(
+        page.contains("<title>a point</title>") && page.contains("<title>pcf:map=512: error 0.1000, 4.00 ms</title>")
+    );
 }
 
 #[test]
@@ -167,7 +179,7 @@ fn arguments() -> BenchArgs {
 fn a_trial_measures_each_technique_and_the_penumbra() {
     let args = arguments();
     let gpu = crate::setup::gpu(&args.gpu, [1, 1]).unwrap();
-    let lab = Lab { args: &args, gpu: &gpu };
+    let lab = Lab { args: &args, gpu: &gpu, scenes: &[] };
     let specs = ["hard:map=64", "pcss:map=256"].map(|text| text.parse().unwrap());
     let measured = |scene: &Scene| {
         let truth = &args.truth;
