@@ -226,7 +226,11 @@ async fn read_first_layers(gpu: &Gpu, texture: &wgpu::Texture, layers: u32) -> R
         texture.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
             buffer: &staging,
-            layout: wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(padded), rows_per_image: Some(texture.height()) },
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded),
+                rows_per_image: Some(texture.height()),
+            },
         },
         wgpu::Extent3d { width: texture.width(), height: texture.height(), depth_or_array_layers: layers },
     );

@@ -63,7 +63,8 @@ impl PenumbraList {
         map: &DepthMap,
         pyramid: Pyramid,
     ) -> Result<(), Error> {
-        let key = ShaderKey::new("passes::classify").feature("trust_dark", matches!(pyramid, Pyramid::Trusted(_)))
+        let key = ShaderKey::new("passes::classify")
+            .feature("trust_dark", matches!(pyramid, Pyramid::Trusted(_)))
             .feature("patches", matches!(pyramid, Pyramid::Patches(_)))
             .with::<FrameUniform>();
         let classify = recorder.gpu.compute_pipeline(&key, "classify_pixels")?;

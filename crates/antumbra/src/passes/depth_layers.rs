@@ -94,7 +94,8 @@ impl DepthLayers {
         apart: f32,
     ) -> Result<&'a DepthLayers, Error> {
         let casters = &frame.casters;
-        let fits = |m: &DepthLayers| m.nearest.fits(size, casters) && m.texture.texture.depth_or_array_layers() == layers;
+        let fits =
+            |m: &DepthLayers| m.nearest.fits(size, casters) && m.texture.texture.depth_or_array_layers() == layers;
         if !slot.as_ref().is_some_and(fits) {
             *slot = None; // Frees the old maps before the new ones are made.
             *slot = Some(DepthLayers::new(recorder.gpu, size, layers, apart > 0.0, casters)?);

@@ -22,8 +22,7 @@ impl PatchPyramid {
         let half = size.div_ceil(2).max(1);
         let mips = 32 - half.leading_zeros();
         let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        let patches =
-            Texture::array(gpu, "patches", [half; 2], layers, mips, wgpu::TextureFormat::Rgba32Uint, usage);
+        let patches = Texture::array(gpu, "patches", [half; 2], layers, mips, wgpu::TextureFormat::Rgba32Uint, usage);
         PatchPyramid {
             levels: (0..mips).map(|m| patches.array_mip(m)).collect(),
             uniform: uniform(gpu, "patches", &PyramidUniform { map_near: 1.0 }),

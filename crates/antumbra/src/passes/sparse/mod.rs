@@ -60,12 +60,7 @@ impl SparsePixels {
     }
 
     /// Makes one in `slot` unless one for such a picture is there.
-    pub fn ensure<'a>(
-        slot: &'a mut Option<SparsePixels>,
-        gpu: &Gpu,
-        size: [u32; 2],
-        spacing: u32,
-    ) -> &'a SparsePixels {
+    pub fn ensure<'a>(slot: &'a mut Option<SparsePixels>, gpu: &Gpu, size: [u32; 2], spacing: u32) -> &'a SparsePixels {
         if !slot.as_ref().is_some_and(|s| s.list.size() == size && s.spacing == spacing) {
             *slot = Some(SparsePixels::new(gpu, size, spacing));
         }

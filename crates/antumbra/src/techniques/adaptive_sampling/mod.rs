@@ -10,7 +10,11 @@ pub use settings::{AdaptiveSamplingSettings, Criterion, Filter, Space};
 
 use crate::frame::FrameUniform;
 use crate::passes::light_maps::{Drawn, Entry, LightMaps, LightSample, LightSamples, MapSlot, MapStage};
-use crate::passes::{classify::{PenumbraList, Pyramid}, depth_map::DepthMap, depth_pyramid::DepthPyramid};
+use crate::passes::{
+    classify::{PenumbraList, Pyramid},
+    depth_map::DepthMap,
+    depth_pyramid::DepthPyramid,
+};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::Recorder;
 use crate::shader::ShaderKey;

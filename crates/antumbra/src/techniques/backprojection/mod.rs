@@ -3,7 +3,10 @@
 
 use crate::frame::FrameUniform;
 use crate::passes::{
-    classify::{PenumbraList, Pyramid}, depth_layers::DepthLayers, patch_pyramid::PatchPyramid, sparse::SparsePixels,
+    classify::{PenumbraList, Pyramid},
+    depth_layers::DepthLayers,
+    patch_pyramid::PatchPyramid,
+    sparse::SparsePixels,
 };
 use crate::pipeline::{Binding, ComputePipeline};
 use crate::recorder::{Recorder, Work};
@@ -26,7 +29,7 @@ gpu_struct! {
         leaf: f32,
         /// Pixels between those that are looked at first.
         spacing: f32,
-       
+
     }
 }
 
@@ -63,7 +66,12 @@ impl Describe for Backprojection {
 
 impl Backprojection {
     /// With the shader that gathers the patches.
-    pub(crate) fn with_gather(gpu: &Gpu, settings: BackprojectionSettings, gather: &'static str, by_tiles: bool) -> Result<Self, Error> {
+    pub(crate) fn with_gather(
+        gpu: &Gpu,
+        settings: BackprojectionSettings,
+        gather: &'static str,
+        by_tiles: bool,
+    ) -> Result<Self, Error> {
         let key = ShaderKey::new(gather)
             .feature(settings.bits.feature(), true)
             .feature("sum", settings.join == Join::Sum)
@@ -71,7 +79,11 @@ impl Backprojection {
             .feature("sparse", settings.spacing != Spacing::S1)
             .with::<FrameUniform>()
             .with::<BackprojectionUniform>();
-        let value = BackprojectionUniform { layers: settings.layers, leaf: 1.0 / settings.window, spacing: settings.spacing.pixels() as f32 };
+        let value = BackprojectionUniform {
+            layers: settings.layers,
+            leaf: 1.0 / settings.window,
+            spacing: settings.spacing.pixels() as f32,
+        };
         Ok(Backprojection {
             gather: gpu.compute_pipeline(&key, "gather")?,
             uniform: uniform(gpu, "backprojection", &value),
@@ -88,7 +100,14 @@ impl Backprojection {
 impl Technique for Backprojection {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         let gpu = recorder.gpu;
-        let maps = DepthLayers::of_light(&mut self.map, recorder, frame, self.settings.map, self.settings.layers, self.settings.apart)?;
+        let maps = DepthLayers::of_light(
+            &mut self.map,
+            recorder,
+            frame,
+            self.settings.map,
+            self.settings.layers,
+            self.settings.apart,
+        )?;
         let map = &maps.nearest;
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);

@@ -88,7 +88,8 @@ impl BackprojectionSettings {
             Quality::Balanced => balanced,
             Quality::Best => BackprojectionSettings {
                 layers: 4,
-                window: 32.0,
+                apart: 8.0,
+                window: 16.0,
                 spacing: Spacing::S1,
                 bits: Bits::B1024,
                 ..balanced

@@ -2,7 +2,11 @@
 //! similar triangles, filter with that width. No constant but the light's size in metres.
 
 use crate::frame::FrameUniform;
-use crate::passes::{classify::{PenumbraList, Pyramid}, depth_map::DepthMap, depth_pyramid::DepthPyramid};
+use crate::passes::{
+    classify::{PenumbraList, Pyramid},
+    depth_map::DepthMap,
+    depth_pyramid::DepthPyramid,
+};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
