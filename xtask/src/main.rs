@@ -39,7 +39,7 @@ fn demo(more: &[String]) -> Result<(), Failure> {
     machine::set_up(&[machine::Need::CppCompiler, machine::Need::VulkanDriver])?;
     // `--bin` and no `--package`: features are then those of the whole workspace, so that `test` builds nothing twice.
     let mut compare = cargo(["run", "--bin", "antumbra", "--", "compare", "builtin:fence"])
-        .args(["-t", "hard", "-t", "pcf", "-t", "pcss"])
+        .args(["-t", "hard", "-t", "pcf", "-t", "pcss", "-t", "backprojection"])
         .args(more);
     // A quarter of the usual rays: nobody waits long for a demo.
     for (option, value) in [("-o", "target/demo"), ("--light-samples", "256")] {

@@ -46,7 +46,7 @@ pub struct RenderArgs {
     #[arg(short, long, value_name = "FILE", group = "outputs", value_parser = png_path)]
     pub output: Option<PathBuf>,
     /// Technique and its settings: name:key=value,key=value; `antumbra techniques` lists them
-    #[arg(short, long, value_name = "SPEC", default_value = "pcss")]
+    #[arg(short, long, value_name = "SPEC", default_value = "backprojection")]
     pub technique: Technique,
     /// Visible fraction of the light at each pixel, to write: .npy (float32, height x width), .exr or .png (16-bit grey)
     #[arg(long, value_name = "FILE", group = "outputs")]

@@ -2,7 +2,7 @@
 //! borrows its buffers to Antumbra and shades with the visibility that it gets back. What concerns Antumbra stands
 //! between the two marked lines.
 //!
-//!     cargo run --example bring_your_own_renderer -- pcss shadow.ppm
+//!     cargo run --example bring_your_own_renderer -- backprojection shadow.ppm
 
 use antumbra::casters::{BorrowedMesh, Indices, Transforms};
 use antumbra::{Aabb, Casters, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Spec, View, frame};
@@ -261,7 +261,7 @@ impl Host {
 #[allow(dead_code, reason = "the test includes this file as a module")]
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
-    let technique = arguments.next().unwrap_or("pcss".to_owned());
+    let technique = arguments.next().unwrap_or("backprojection".to_owned());
     let path = arguments.next().unwrap_or("shadow.ppm".to_owned());
     let (_, picture) = pollster::block_on(render(&technique))?;
     let rgb = picture.chunks_exact(4).flat_map(|p| &p[..3]).copied();

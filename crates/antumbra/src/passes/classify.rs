@@ -1,7 +1,7 @@
 //! Which pixels need a filter at all: lit, dark and turned-away pixels are answered at once, penumbra pixels are listed.
 
 use crate::frame::{Frame, FrameUniform};
-use crate::passes::{depth_map::DepthMap, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid};
+use crate::passes::{depth_map::DepthMap, depth_pyramid::DepthPyramid};
 use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::storage_buffer;
 use crate::shader::ShaderKey;
@@ -15,17 +15,6 @@ pub struct PenumbraList {
     /// Indirect arguments, the count, then for each tile of 8 x 8 pixels that has some the first and how many.
     pub tiles: wgpu::Buffer,
     size: [u32; 2],
-}
-
-/// What bounds the depths below a window of the map.
-#[derive(Clone, Copy)]
-pub enum Pyramid<'a> {
-    /// Depths; what is dark from the light's centre is dark.
-    Trusted(&'a DepthPyramid),
-    /// Depths.
-    Depths(&'a DepthPyramid),
-    /// The first layer of patches.
-    Patches(&'a PatchPyramid),
 }
 
 impl PenumbraList {
@@ -54,30 +43,28 @@ impl PenumbraList {
     }
 
     /// Writes the visibility of known pixels and lists the others, whose visibility is -1 until the technique writes it. What the light's centre sees nothing of may be lit
-    /// from its rim, through a gap that the centre does not see: only techniques that look from nowhere else trust a depth
-    /// pyramid that such pixels are dark; others get them listed. What is lit by the map surely is.
+    /// from its rim, through a gap that the centre does not see: only techniques that look from nowhere else
+    /// `trust_dark`; others get such pixels listed. What is lit by the map surely is.
     pub fn record(
         &self,
         recorder: &mut Recorder,
         frame: &Frame,
         map: &DepthMap,
-        pyramid: Pyramid,
+        pyramid: &DepthPyramid,
+        trust_dark: bool,
     ) -> Result<(), Error> {
-        let key = ShaderKey::new("passes::classify")
-            .feature("trust_dark", matches!(pyramid, Pyramid::Trusted(_)))
-            .feature("patches", matches!(pyramid, Pyramid::Patches(_)))
-            .with::<FrameUniform>();
+        let key = ShaderKey::new("passes::classify").feature("trust_dark", trust_dark).with::<FrameUniform>();
         let classify = recorder.gpu.compute_pipeline(&key, "classify_pixels")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
         for counted in [&self.buffer, &self.tiles] {
             recorder.encoder.clear_buffer(counted, 0, Some(16));
         }
-        let nodes = match pyramid {
-            Pyramid::Trusted(p) | Pyramid::Depths(p) => bindings! { pyramid_bounds: &p.bounds },
-            Pyramid::Patches(p) => bindings! { patches: &p.patches },
-        };
-        let map = bindings! { depth_map: &map.texture, penumbra: &self.buffer, tiles: &self.tiles };
-        let set = frame.bindings(&[map.as_slice(), nodes.as_slice()].concat());
+        let set = frame.bindings(bindings! {
+            depth_map: &map.texture,
+            pyramid_bounds: &pyramid.bounds,
+            penumbra: &self.buffer,
+            tiles: &self.tiles,
+        });
         let [width, height] = frame.geometry.size;
         recorder.compute_pass("pixel classification", |gpu, pass| {
             pass.set_pipeline(&classify.pipeline);

@@ -53,8 +53,8 @@ pub struct DepthLayers {
     shape_buffer: wgpu::Buffer,
 }
 
-/// Surfaces that are collected for each texel where some are left out, if that many fit into a buffer.
-const COLLECTED: u32 = 8;
+/// Surfaces that are collected for each texel besides the layers where some are left out, if that many fit into a buffer.
+const COLLECTED_BESIDES: u32 = 2;
 
 impl DepthLayers {
     /// Empty maps of `size` texels a side; `layers` is 1 or more. Those that are `left_out` are collected besides.
@@ -69,7 +69,7 @@ impl DepthLayers {
             let max = (most / u64::from(layers)).isqrt() as u32;
             return Err(Error::Size { what: "depth layers", width: size, height: size, max });
         }
-        let count = if left_out { COLLECTED.min(fit).max(layers) } else { layers };
+        let count = if left_out { (layers + COLLECTED_BESIDES).min(fit) } else { layers };
         let shape = LayerShape { size, row, count, gap: 0.0 };
         let usage =
             wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;

@@ -3,9 +3,7 @@
 
 use crate::frame::FrameUniform;
 use crate::passes::{
-    classify::{PenumbraList, Pyramid},
-    depth_layers::DepthLayers,
-    patch_pyramid::PatchPyramid,
+    classify::PenumbraList, depth_layers::DepthLayers, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid,
     sparse::SparsePixels,
 };
 use crate::pipeline::{Binding, ComputePipeline};
@@ -41,6 +39,7 @@ pub struct Backprojection {
     gather: Arc<ComputePipeline>,
     uniform: wgpu::Buffer,
     map: Option<DepthLayers>,
+    pyramid: Option<DepthPyramid>,
     patches: Option<PatchPyramid>,
     list: Option<PenumbraList>,
     sparse: Option<SparsePixels>,
@@ -90,6 +89,7 @@ impl Backprojection {
             settings,
             by_tiles,
             map: None,
+            pyramid: None,
             patches: None,
             list: None,
             sparse: None,
@@ -110,9 +110,11 @@ impl Technique for Backprojection {
         )?;
         let map = &maps.nearest;
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
+        let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
         patches.record(recorder, maps, frame.frustum.near)?;
-        list.record(recorder, frame, map, Pyramid::Patches(patches))?;
+        pyramid.record(recorder, map, frame.frustum.near)?;
+        list.record(recorder, frame, map, pyramid, false)?;
         let look = |recorder: &mut Recorder, list: &PenumbraList, sharpness: &[Binding]| {
             let set = bindings! {
                 depth_map: &map.texture,
@@ -138,7 +140,8 @@ impl Technique for Backprojection {
 
     fn memory(&self) -> Vec<Memory> {
         let map = self.map.iter().flat_map(DepthLayers::memory);
-        map.chain(self.patches.iter().map(PatchPyramid::memory))
+        map.chain(self.pyramid.iter().map(DepthPyramid::memory))
+            .chain(self.patches.iter().map(PatchPyramid::memory))
             .chain(self.list.iter().map(PenumbraList::memory))
             .chain(self.sparse.iter().map(SparsePixels::memory))
             .collect()

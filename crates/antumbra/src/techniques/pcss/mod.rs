@@ -2,11 +2,7 @@
 //! similar triangles, filter with that width. No constant but the light's size in metres.
 
 use crate::frame::FrameUniform;
-use crate::passes::{
-    classify::{PenumbraList, Pyramid},
-    depth_map::DepthMap,
-    depth_pyramid::DepthPyramid,
-};
+use crate::passes::{classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
@@ -75,7 +71,7 @@ impl Technique for Pcss {
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
         pyramid.record(recorder, map, frame.frustum.near)?;
-        list.record(recorder, frame, map, Pyramid::Trusted(pyramid))?;
+        list.record(recorder, frame, map, pyramid, true)?;
         let set = frame.bindings(bindings! {
             depth_map: &map.texture,
             pyramid_bounds: &pyramid.bounds,
