@@ -15,43 +15,32 @@ fn hovering(size: Vec2) -> Scene {
     Scene { name: format!("a box under a light of {} m x {} m", size.x, size.y), ..scene(meshes, view, light) }
 }
 
-/// What is wrong under a rectangle, lines along either edge and a point.
-fn faults_by(name: &str) -> Vec<String> {
+#[test]
+fn lines_and_points_are_lights_too() {
     let mut faults = Vec::new();
     for (size, bound) in [
         (Vec2::new(0.9, 0.7), 0.008),
-        (Vec2::new(1.1, 0.0), 0.004),
-        (Vec2::new(0.0, 0.8), 0.004),
+        (Vec2::new(1.1, 0.0), 0.002),
+        (Vec2::new(0.0, 0.8), 0.002),
         // An edge through a pixel: all or nothing.
-        (Vec2::ZERO, 0.015),
+        (Vec2::ZERO, 0.005),
     ] {
         let judged = Judged::new(&hovering(size), SIZE, 256);
-        let f = judged.figures(&format!("{name}:layers=2,window=16"));
-        println!("{} by {name}: average {:.4}, max {:.3}, leak {:.4}", judged.name, f.average_error, f.max, f.leak);
-        if f.average_error > bound || f.leak > 0.01 || f.acne > 0.002 {
-            faults.push(format!("{} by {name}: {f:?}", judged.name));
+        for spec in ["backprojection:window=16", "packet:window=16"] {
+            let f = judged.figures(spec);
+            println!("{} by {spec}: average {:.4}, max {:.3}, leak {:.4}", judged.name, f.average_error, f.max, f.leak);
+            if f.average_error > bound || f.leak > 0.001 || f.acne > 0.001 {
+                faults.push(format!("{} by {spec}: {f:?}", judged.name));
+            }
         }
     }
-    faults
-}
-
-#[test]
-fn lines_and_points_are_lights_too() {
-    let faults = faults_by("backprojection");
-    assert!(faults.is_empty(), "{faults:#?}");
-}
-
-#[test]
-#[ignore = "in some runs packets lose occluders under a line or a point: a leak of up to 0.1"]
-fn lines_and_points_are_lights_for_packets_too() {
-    let faults: Vec<String> = (0..4).flat_map(|_| faults_by("packet")).collect();
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
 /// Average and largest error over lights from 0.05 to 3 times as wide as the occluder is far from what it shades.
 fn sweep(name: &str, scene: &Scene, distance: f32, bound: f64) {
     let mut faults = Vec::new();
-    for ratio in [0.05, 0.2, 0.7, 1.5, 3.0] {
+    for ratio in [0.05, 0.5, 3.0] {
         let mut scene = scene.clone();
         scene.light.size = Vec2::splat(ratio * distance);
         let f = Judged::new(&scene, SIZE, 256).figures("backprojection");

@@ -49,7 +49,7 @@ fn gaps(is_wrong: impl Fn(&Umbra) -> bool, settings: &str) -> Vec<String> {
     for degrees in [0.0, 20.0, 45.0, 70.0, 85.0] {
         let judged = Judged::new(&tilted(degrees), SIZE, 256);
         for layers in [1, 2] {
-            let found = umbra(&judged, &format!("backprojection:map=512,layers={layers}{settings}"));
+            let found = umbra(&judged, &format!("backprojection:map=512,spacing=1,layers={layers}{settings}"));
             println!("{}, {layers} layers{settings}: {found:?}", judged.name);
             if is_wrong(&found) || found.count < 50 {
                 faults.push(format!("{}, {layers} layers{settings}: {found:?}", judged.name));
@@ -60,21 +60,26 @@ fn gaps(is_wrong: impl Fn(&Umbra) -> bool, settings: &str) -> Vec<String> {
 }
 
 #[test]
-fn an_umbra_of_a_plane_at_any_tilt_has_a_point_of_light_in_few_pixels() {
-    // The patches' slopes are rounded, and so are the edges of neighbours: a point may fall between.
-    let faults = gaps(|u| u.brightest > 1.0 / 256.0 || u.lit > 0.005, "");
+fn an_umbra_of_a_plane_at_any_tilt_has_no_gaps() {
+    let faults = gaps(|u| u.brightest > 0.0, ",window=16,bits=256");
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
 #[test]
-#[ignore = "neighbouring boxes are rounded apart: of 1186 pixels one has two of 1024 points at 85 degrees"]
-fn an_umbra_of_a_plane_at_any_tilt_has_no_gaps() {
-    let faults = [",bits=256", ",bits=1024"].map(|bits| gaps(|u| u.brightest > 0.0, bits)).concat();
+fn an_umbra_by_few_patches_has_some_points_of_light_in_few_pixels() {
+    let faults = gaps(|u| u.brightest > 6.0 / 1024.0 || u.lit > 0.01, ",window=4,bits=1024");
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+#[test]
+#[ignore = "five of 1024 points in one of 100 pixels by window=4 at 70 and 85 degrees, one in one pixel by window=16"]
+fn an_umbra_of_a_plane_has_no_gaps_by_the_most_points() {
+    let faults = [",window=4,bits=1024", ",window=16,bits=1024"].map(|s| gaps(|u| u.brightest > 0.0, s)).concat();
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
 #[test]
 fn flat_patches_leave_gaps() {
-    let faults = gaps(|u| u.brightest > 0.02, ",gaps_filled=false");
+    let faults = gaps(|u| u.brightest > 0.015, ",window=16,gaps_filled=false");
     assert!(faults.len() == 10, "only these have gaps: {faults:#?}");
 }

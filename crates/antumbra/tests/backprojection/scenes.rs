@@ -26,11 +26,11 @@ fn masked_foliage_casts_its_shadow() {
     let judged = Judged::builtin("plant:leaves=8", [96, 96], 128);
     // The leaves hide each other: what is behind the first layer counts.
     for (layers, bound) in [(1, 0.04), (2, 0.018), (4, 0.016)] {
-        let spec = format!("backprojection:layers={layers}");
+        let spec = format!("backprojection:layers={layers},window=16,spacing=1");
         let f = judged.figures(&spec);
         println!("{spec}: average {:.4}, max {:.3}, leak {:.4}, acne {:.5}", f.average_error, f.max, f.leak, f.acne);
         assert!(f.average_error < bound && f.acne < 0.001, "{spec}: {f:?}");
-        assert!(layers == 1 || f.leak < 0.01, "{spec}: {f:?}");
+        assert!(layers == 1 || f.leak < 0.012, "{spec}: {f:?}");
     }
 }
 
@@ -38,8 +38,8 @@ fn masked_foliage_casts_its_shadow() {
 fn packet_differences(settings: &str) -> Vec<(String, f32, f32)> {
     let each = |spec: &&str| {
         let judged = Judged::builtin(spec, [96, 72], 1);
-        let [single, packet] =
-            ["backprojection", "packet"].map(|name| judged.picture(&format!("{name}:map=512,{settings}")));
+        let [single, packet] = ["backprojection:spacing=1", "packet:spacing=1"]
+            .map(|name| judged.picture(&format!("{name},map=512,{settings}")));
         let differing = single.iter().zip(&packet).filter(|(a, b)| a != b).count();
         let most = largest_difference(&single, &packet);
         let mean = single.iter().zip(&packet).map(|(a, b)| (a - b).abs()).sum::<f32>() / single.len() as f32;
@@ -60,7 +60,6 @@ fn packets_find_what_single_pixels_find() {
 }
 
 #[test]
-#[ignore = "a packet's walk takes nodes that are coarser than any of a pixel's own: off by up to 0.38 on plant"]
 fn packets_find_what_single_pixels_find_by_few_patches() {
     for (what, most, mean) in ["window=1", "window=2", "window=4"].iter().flat_map(|s| packet_differences(s)) {
         assert!(most <= 4.0 / 256.0 && mean < 1e-5, "{what}: by {most}, by {mean} in the mean");
@@ -68,7 +67,6 @@ fn packets_find_what_single_pixels_find_by_few_patches() {
 }
 
 #[test]
-#[ignore = "packets are made of other pixels in every run: pixels change by a point or two"]
 fn packets_are_the_same_in_every_picture() {
     let mut faults = Vec::new();
     for spec in ["spheres:segments=8", "plant:leaves=8"] {
