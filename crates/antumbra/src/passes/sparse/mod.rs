@@ -41,12 +41,8 @@ const MOST_DIFFERENCE: f32 = 0.01;
 impl SparsePixels {
     /// For pictures of this size; `spacing` is that of the pixels that are looked at first, a power of two.
     pub fn new(gpu: &Gpu, size: [u32; 2], spacing: u32) -> SparsePixels {
-        let stage = |step, kind| StageUniform {
-            step,
-            kind,
-            most_change: std::env::var("MC").map_or(MOST_CHANGE, |v| v.parse().unwrap()),
-            most_difference: std::env::var("MD").map_or(MOST_DIFFERENCE, |v| v.parse().unwrap()),
-        };
+        let stage =
+            |step, kind| StageUniform { step, kind, most_change: MOST_CHANGE, most_difference: MOST_DIFFERENCE };
         let halves = std::iter::successors(Some(spacing / 2), |step| Some(step / 2)).take_while(|step| *step > 0);
         let between = halves.flat_map(|step| [stage(step, 1), stage(step, 2)]);
         let stages: Vec<_> = std::iter::once(stage(spacing, 0)).chain(between).collect();

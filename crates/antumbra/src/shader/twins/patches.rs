@@ -79,7 +79,7 @@ fn merge_with(children: &[Patch; 4], flat_counts: f64) -> (Patch, f64) {
     } else {
         parted(children, 0.0, flat_counts)
     };
-    if one.residual <= 0.25 * (high - low) || high == low {
+    if one.residual <= 0.25 * (high - low) || high - low <= 1.0e-6 * high {
         return (one, 0.0);
     }
     let middle = 0.5 * (low + high);
@@ -224,7 +224,6 @@ fn a_packed_patch_bounds_what_it_was() {
 
 /// What is there stays there, nothing stays nothing, and no hole opens where there was none.
 #[test]
-#[ignore = "shares that make a whole but for rounding are packed with a hole: 62 of 63 steps, 254 of 255"]
 fn shares_are_packed_to_the_next_step() {
     for got in on_gpu(&inputs(4096)) {
         let (p, packed) = (patch_of(&got), patch_of(&got[8..]));
