@@ -42,9 +42,10 @@ impl PenumbraList {
         self.size
     }
 
-    /// Writes the visibility of known pixels and lists the others, whose visibility is -1 until the technique writes it. What the light's centre sees nothing of may be lit
-    /// from its rim, through a gap that the centre does not see: only techniques that look from nowhere else
-    /// `trust_dark`; others get such pixels listed. What is lit by the map surely is.
+    /// Writes the visibility of known pixels and lists the others, whose visibility is -1 until the technique writes it.
+    /// What the light's centre sees nothing of may be lit from its rim, through a gap that the centre does not see: only
+    /// techniques that look from nowhere else `trust_dark`; others get such pixels listed. What is lit by the map surely
+    /// is.
     pub fn record(
         &self,
         recorder: &mut Recorder,

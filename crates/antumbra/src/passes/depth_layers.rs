@@ -15,7 +15,7 @@
 //! Peeling wins where few triangles cover many texels and two layers are asked for; the one pass gains with the number of
 //! layers and of triangles, and over all takes two thirds of the time. GPUs have not been measured. Reading the buffer
 //! instead of a texture made from it would save a twentieth. The price is memory: 2k + 1 maps for k layers where peeling
-//! has k.
+//! has k, and two more where surfaces are left out.
 
 use crate::casters::Casters;
 use crate::passes::depth_map::DepthMap;
