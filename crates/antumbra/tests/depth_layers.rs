@@ -18,13 +18,22 @@ fn depths(texture: &wgpu::Texture) -> Vec<f32> {
     bytemuck::pod_collect_to_vec(&block_on(read_texture(gpu(), texture)).expect("reads"))
 }
 
-/// The layers in a texture.
-fn of_texture(texture: &Texture) -> Vec<Vec<f32>> {
+/// The layers in a texture: their nearer surfaces and their thickness.
+fn columns(texture: &Texture) -> Vec<Vec<[f32; 2]>> {
     let [count, width] = [texture.texture.depth_or_array_layers(), texture.texture.width()];
     let bytes = block_on(read_layers(gpu(), &texture.texture)).expect("reads");
-    let all: Vec<f32> = bytemuck::pod_collect_to_vec(&bytes);
+    let all: Vec<[f32; 2]> = bytemuck::pod_collect_to_vec(&bytes);
     assert_eq!(all.len(), (count * width * width) as usize);
-    all.chunks_exact((width * width) as usize).map(<[f32]>::to_vec).collect()
+    all.chunks_exact((width * width) as usize).map(<[[f32; 2]]>::to_vec).collect()
+}
+
+/// The nearer surfaces of layers that are no thicker than that.
+fn of_texture(texture: &Texture) -> Vec<Vec<f32>> {
+    let surface = |[near, thickness]: &[f32; 2]| {
+        assert_eq!(*thickness, 0.0, "a layer of a single surface");
+        *near
+    };
+    columns(texture).iter().map(|layer| layer.iter().map(surface).collect()).collect()
 }
 
 /// The layers of a scene, nearest first.
@@ -35,12 +44,12 @@ fn layers(renderer: &SceneRenderer, size: u32, count: u32) -> Vec<Vec<f32>> {
 
 fn drawn_layers(renderer: &SceneRenderer, size: u32, count: u32) -> DepthLayers {
     let mut slot = None;
-    draw(&mut slot, renderer, size, count);
+    draw(&mut slot, renderer, size, count, 0.0);
     slot.expect("made")
 }
 
-fn draw(slot: &mut Option<DepthLayers>, renderer: &SceneRenderer, size: u32, count: u32) {
-    common::submit(|recorder| DepthLayers::of_light(slot, recorder, &renderer.frame, size, count, 0.0).map(|_| ()))
+fn draw(slot: &mut Option<DepthLayers>, renderer: &SceneRenderer, size: u32, count: u32, apart: f32) {
+    common::submit(|recorder| DepthLayers::of_light(slot, recorder, &renderer.frame, size, count, apart).map(|_| ()))
         .expect("draws");
 }
 
@@ -205,6 +214,66 @@ fn a_stack_gives_its_depths_and_coinciding_surfaces_count_once() {
     }
 }
 
+/// The layers of large sheets at some heights below a light at 4 m that looks straight down, as distances from the light:
+/// of each layer the nearer end and the farther, in any texel.
+fn layers_of_sheets(heights: &[f32], count: u32, gap: f32) -> Vec<Option<(f32, f32)>> {
+    let mut scene = casting(heights.iter().map(|y| quad([0.0, *y, 0.0], [9.0; 2])).collect());
+    scene.light = light([0.0, 4.0, 0.0], [0.0; 3], 0.5);
+    scene.light.shadow_fov_deg = Some(40.0);
+    let renderer = drawn(&scene, [16, 16]);
+    // So many texels as the light moves something by, over `gap` of inverse distance.
+    let frustum = renderer.frame.frustum;
+    let apart = gap * 0.25 / (2.0 * frustum.tan_half.x / SIZE as f32);
+    let mut slot = None;
+    draw(&mut slot, &renderer, SIZE, count, apart);
+    // Twice: nothing is left of the first time.
+    draw(&mut slot, &renderer, SIZE, count, apart);
+    let of_layer = |layer: &Vec<[f32; 2]>| {
+        let first = layer[0];
+        let same = |t: &[f32; 2]| (t[0] - first[0]).abs() + (t[1] - first[1]).abs() < 1e-6 * first[0].max(1e-9);
+        assert!(layer.iter().all(same), "sheets fill the map");
+        (first[0] > 0.0).then(|| (frustum.near / first[0], frustum.near / (first[0] - first[1])))
+    };
+    columns(&slot.expect("made").texture).iter().map(of_layer).collect()
+}
+
+#[test]
+fn surfaces_that_the_light_hardly_tells_apart_are_a_layer_with_a_thickness() {
+    // At 1, 1.1, 2, 2.2, and 4 m from the light: 1, 0.91, 0.5, 0.45 and 0.25 as inverse distance.
+    let heights = [1.8, 3.0, 2.0, 0.0, 2.9];
+    let expect = |count, gap, expected: &[Option<(f32, f32)>]| {
+        let found = layers_of_sheets(&heights, count, gap);
+        let off = |(a, b): (&Option<(f32, f32)>, &Option<(f32, f32)>)| match (a, b) {
+            (Some(a), Some(b)) => (a.0 - b.0).abs().max((a.1 - b.1).abs()),
+            (a, b) => f32::from(u8::from(a != b)) * 9.0,
+        };
+        let worst = found.iter().zip(expected).map(off).fold(0.0, f32::max);
+        assert!(found.len() == expected.len() && worst < 1e-4, "gap {gap}: {found:?}, expected {expected:?}");
+    };
+    // Two pairs and the ground.
+    expect(4, 0.1, &[Some((1.0, 1.1)), Some((2.0, 2.2)), Some((4.0, 4.0)), None]);
+    // Closer ones only.
+    expect(4, 0.06, &[Some((1.0, 1.0)), Some((1.1, 1.1)), Some((2.0, 2.2)), Some((4.0, 4.0))]);
+    // All but the ground are one.
+    expect(2, 0.6, &[Some((1.0, 2.2)), Some((4.0, 4.0))]);
+    // The last layer takes what is behind it, but not the ground.
+    expect(2, 0.06, &[Some((1.0, 1.0)), Some((1.1, 2.2))]);
+    expect(1, 0.1, &[Some((1.0, 2.2))]);
+    // One surface behind the last layer is the ground, as far as that is known.
+    expect(2, 0.1, &[Some((1.0, 1.1)), Some((2.0, 2.2))]);
+}
+
+#[test]
+fn a_last_layer_reaches_down_to_all_that_is_collected() {
+    // More than are collected for one layer, five: the farthest of those may be the ground.
+    let heights = [3.0, 2.5, 2.0, 1.5, 1.0, 0.5, 0.0];
+    let found = layers_of_sheets(&heights, 1, 1e-3);
+    assert!(
+        matches!(found[..], [Some((top, low))] if (top - 1.0).abs() < 1e-4 && (low - 2.5).abs() < 1e-4),
+        "{found:?}"
+    );
+}
+
 #[test]
 fn both_sides_of_a_box_are_layers() {
     let layers = layers(&drawn(&casting(vec![cuboid([-0.5, 0.0, -0.5], [0.5, 1.0, 0.5])]), [16, 16]), SIZE, 3);
@@ -220,9 +289,9 @@ fn nothing_is_left_of_the_frame_before() {
         drawn(&casting(quads), [16, 16])
     });
     let mut slot = None;
-    draw(&mut slot, &high, SIZE, 2);
+    draw(&mut slot, &high, SIZE, 2, 0.0);
     let first = slot.as_ref().expect("made").texture.clone();
-    draw(&mut slot, &low, SIZE, 2);
+    draw(&mut slot, &low, SIZE, 2, 0.0);
     let again = slot.expect("made").texture;
     assert_eq!(again.texture, first.texture, "the maps are drawn into again");
     for (i, (fresh, used)) in layers(&low, SIZE, 2).iter().zip(of_texture(&again)).enumerate() {
@@ -239,7 +308,7 @@ fn maps_are_kept_while_size_number_and_casters_are_the_same() {
         let mut found = None;
         common::submit(|recorder| {
             let maps = DepthLayers::of_light(&mut slot, recorder, &renderer.frame, size, count, 0.0)?;
-            assert_eq!(maps.memory()[1].bytes, u64::from(size * size * (2 * count + 1) * 4));
+            assert_eq!(maps.memory()[1].bytes, u64::from(size * size * (3 * count + 1) * 4));
             found = Some(maps.texture.texture.clone());
             Ok(())
         })

@@ -26,65 +26,75 @@ use crate::technique::Memory;
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 
 gpu_struct! {
-    /// Where a texel's depths are in the buffer, layer after layer, row after row.
+    /// Where a texel's depths are in the buffer, one behind the other, row after row.
     pub(crate) struct LayerShape {
         /// Texels a side.
         size: u32,
         /// Texels from one row to the next.
         row: u32,
-        /// Layers that are collected.
+        /// Surfaces that are collected.
         count: u32,
-        /// Surfaces that are less than this behind the one before are left out, in the unit of the depths.
+        /// Surfaces that are less than this behind a layer's first are of that layer, in the unit of the depths.
         gap: f32,
     }
 }
 
-/// Square maps of `near / z` as in [`DepthMap`], one behind the other: layer `i` holds the i-th nearest surface of each
-/// texel, front or back, and 0 where there are no more. Depths descend strictly: surfaces of the same depth to the last
-/// bit are one. Coinciding surfaces that are not of the same triangles may differ in the last bits, by up to some 4e-7 of
-/// the depth, and are then two unless surfaces are left out.
+/// Square maps, one behind the other, of what lies between two distances: each texel has the `near / z` of the nearer, as
+/// in [`DepthMap`], and the difference to that of the farther. A layer is a surface, or several that the light can hardly
+/// tell apart, such as both sides of a slat or the leaves of a twig. The last one is a column down to surfaces for which
+/// no layer is left. Where there are no more, it is 0.
+///
+/// Surfaces of the same depth to the last bit are one. Coinciding surfaces that are not of the same triangles may differ in
+/// the last bits, by up to some 4e-7 of the depth.
 pub struct DepthLayers {
-    /// `R32Float`, `size` x `size` x `layers`; its view is an array even of a single layer.
+    /// `Rg32Float`, `size` x `size` x `layers`; its view is an array even of a single layer.
     pub texture: Texture,
-    /// The first layer as a depth map, drawn by the way.
+    /// The nearest surface as a depth map, drawn by the way.
     pub nearest: DepthMap,
+    /// Whether more surfaces than layers are collected.
+    merged: bool,
+    /// 0 between frames.
     depths: wgpu::Buffer,
     shape: LayerShape,
     shape_buffer: wgpu::Buffer,
 }
 
-/// Surfaces that are collected for each texel besides the layers where some are left out, if that many fit into a buffer.
-const COLLECTED_BESIDES: u32 = 2;
+/// Surfaces that are collected for each texel besides a layer each, where several may be one: as a rule both sides of two
+/// more things.
+const COLLECTED_BESIDES: u32 = 4;
 
 impl DepthLayers {
-    /// Empty maps of `size` texels a side; `layers` is 1 or more. Those that are `left_out` are collected besides.
-    pub fn new(gpu: &Gpu, size: u32, layers: u32, left_out: bool, casters: &Casters) -> Result<DepthLayers, Error> {
+    /// Empty maps of `size` texels a side; `layers` is 1 or more. If surfaces are `merged`, more than that are collected,
+    /// as far as they fit into a buffer.
+    pub fn new(gpu: &Gpu, size: u32, layers: u32, merged: bool, casters: &Casters) -> Result<DepthLayers, Error> {
         gpu.check_size("shadow map", size, size)?;
         let limits = gpu.device.limits();
         let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size) / 4;
-        let row = size.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT / 4);
+        let row = size.next_multiple_of(64);
         let texels = u64::from(row) * u64::from(size);
         let fit = (most / texels) as u32;
         if fit < layers {
             let max = (most / u64::from(layers)).isqrt() as u32;
             return Err(Error::Size { what: "depth layers", width: size, height: size, max });
         }
-        let count = if left_out { (layers + COLLECTED_BESIDES).min(fit) } else { layers };
+        let count = if merged { (layers + COLLECTED_BESIDES).min(fit) } else { layers };
         let shape = LayerShape { size, row, count, gap: 0.0 };
         let usage =
-            wgpu::TextureUsages::COPY_DST | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
+            wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::TEXTURE_BINDING;
         Ok(DepthLayers {
-            texture: Texture::array(gpu, "depth layers", [size; 2], layers, 1, wgpu::TextureFormat::R32Float, usage),
+            texture: Texture::array(gpu, "depth layers", [size; 2], layers, 1, wgpu::TextureFormat::Rg32Float, usage),
             depths: storage_buffer(gpu, "nearest depths", 4 * texels * u64::from(count)),
             nearest: DepthMap::new(gpu, size, casters)?,
+            merged,
             shape,
             shape_buffer: uniform(gpu, "layer shape", &shape),
         })
     }
 
     /// Makes maps in `slot` unless `layers` of this size for these casters are there, and draws what the light's centre
-    /// sees and what lies behind it. Left out is what moves by less than `apart` texels against the surface before it
-    /// when the eye goes from the light's centre to its rim; 0 keeps all.
+    /// sees and what lies behind it. What moves by less than `apart` texels against the first surface of a layer when the
+    /// eye goes from the light's centre to its rim is of that layer. 0 gives each surface its own, and leaves out those
+    /// behind the last.
     pub fn of_light<'a>(
         slot: &'a mut Option<DepthLayers>,
         recorder: &mut Recorder,
@@ -93,12 +103,14 @@ impl DepthLayers {
         layers: u32,
         apart: f32,
     ) -> Result<&'a DepthLayers, Error> {
-        let casters = &frame.casters;
-        let fits =
-            |m: &DepthLayers| m.nearest.fits(size, casters) && m.texture.texture.depth_or_array_layers() == layers;
+        let (casters, merged) = (&frame.casters, apart > 0.0);
+        let fits = |m: &DepthLayers| {
+            let kept = m.texture.texture.depth_or_array_layers();
+            m.nearest.fits(size, casters) && kept == layers && m.merged == merged
+        };
         if !slot.as_ref().is_some_and(fits) {
             *slot = None; // Frees the old maps before the new ones are made.
-            *slot = Some(DepthLayers::new(recorder.gpu, size, layers, apart > 0.0, casters)?);
+            *slot = Some(DepthLayers::new(recorder.gpu, size, layers, merged, casters)?);
         }
         let maps = slot.as_ref().expect("just made");
         maps.record(recorder, frame, apart)?;
@@ -106,28 +118,27 @@ impl DepthLayers {
     }
 
     fn record(&self, recorder: &mut Recorder, frame: &Frame, apart: f32) -> Result<(), Error> {
-        let texel = 2.0 * frame.frustum.tan_half / self.shape.size as f32;
-        let half_light = (0.5 * frame.light.size).max(glam::Vec2::splat(1.0e-6));
-        let gap = apart * frame.frustum.near * (texel / half_light).min_element();
+        let gap = frame.frustum.near * self.gap(frame, apart);
         let shape = LayerShape { gap, ..self.shape };
         recorder.gpu.queue.write_buffer(&self.shape_buffer, 0, &shape.uniform_bytes());
-        recorder.encoder.clear_buffer(&self.depths, 0, None);
-        let set = bindings! { nearest_depths: &self.depths, layer_shape: &self.shape_buffer };
-        self.nearest.draw(recorder, "depth layers", &frame.casters, frame.map_clip_from_world(), Some(set))?;
-        if gap > 0.0 {
-            let key = ShaderKey::new("passes::depth_layers").with::<LayerShape>();
-            let leave_out = recorder.gpu.compute_pipeline(&key, "leave_out")?;
-            recorder.compute("leaving out layers", &leave_out, set, Work::Threads([shape.size, shape.size, 1]));
-        }
-        let extent = self.texture.texture.size();
-        let layout = wgpu::TexelCopyBufferLayout {
-            offset: 0,
-            bytes_per_row: Some(4 * shape.row),
-            rows_per_image: Some(shape.size),
+        let collected = bindings! { nearest_depths: &self.depths, layer_shape: &self.shape_buffer };
+        self.nearest.draw(recorder, "depth layers", &frame.casters, frame.map_clip_from_world(), Some(collected))?;
+        let key = ShaderKey::new("passes::depth_layers").with::<LayerShape>();
+        let merge = recorder.gpu.compute_pipeline(&key, "merge_layers")?;
+        let set = bindings! {
+            nearest_depths: &self.depths,
+            layer_shape: &self.shape_buffer,
+            layers: &self.texture,
         };
-        let source = wgpu::TexelCopyBufferInfo { buffer: &self.depths, layout };
-        recorder.encoder.copy_buffer_to_texture(source, self.texture.texture.as_image_copy(), extent);
+        recorder.compute("merging layers", &merge, set, Work::Threads([shape.size, shape.size, 1]));
         Ok(())
+    }
+
+    /// The difference of inverse distances at which the light moves surfaces by `apart` texels against each other.
+    pub fn gap(&self, frame: &Frame, apart: f32) -> f32 {
+        let texel = 2.0 * frame.frustum.tan_half / self.shape.size as f32;
+        let half_light = (0.5 * frame.light.size).max(glam::Vec2::splat(1.0e-6));
+        apart * (texel / half_light).min_element()
     }
 
     /// GPU memory by pass.

@@ -1,11 +1,21 @@
 //! A pyramid of patches over the layers of a depth map: what lies below a node as one plane or as two surfaces.
 
-use crate::passes::{depth_layers::DepthLayers, depth_pyramid::PyramidUniform};
+use crate::passes::depth_layers::DepthLayers;
 use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
 use crate::technique::Memory;
-use crate::{Error, Gpu, bindings};
+use crate::{Error, Gpu, bindings, gpu_struct};
+
+gpu_struct! {
+    /// The unit of the maps.
+    pub(crate) struct PatchUniform {
+        /// Distance at which the maps begin, in metres.
+        map_near: f32,
+        /// Surfaces of a layer are closer together than this, as inverse distance; only the last layer may be thicker.
+        gap: f32,
+    }
+}
 
 /// Levels over the layers of a depth map, from half its size down to one texel; see `shaders/patches.wesl`.
 pub struct PatchPyramid {
@@ -25,7 +35,7 @@ impl PatchPyramid {
         let patches = Texture::array(gpu, "patches", [half; 2], layers, mips, wgpu::TextureFormat::Rgba32Uint, usage);
         PatchPyramid {
             levels: (0..mips).map(|m| patches.array_mip(m)).collect(),
-            uniform: uniform(gpu, "patches", &PyramidUniform { map_near: 1.0 }),
+            uniform: uniform(gpu, "patches", &PatchUniform { map_near: 1.0, gap: 0.0 }),
             patches,
             map_size: size,
         }
@@ -41,9 +51,9 @@ impl PatchPyramid {
     }
 
     /// Reduces the first layers of maps whose frustum begins at `map_near` metres.
-    pub fn record(&self, recorder: &mut Recorder, maps: &DepthLayers, map_near: f32) -> Result<(), Error> {
-        recorder.gpu.queue.write_buffer(&self.uniform, 0, &PyramidUniform { map_near }.uniform_bytes());
-        let key = ShaderKey::new("passes::patch_pyramid").with::<PyramidUniform>();
+    pub fn record(&self, recorder: &mut Recorder, maps: &DepthLayers, map_near: f32, gap: f32) -> Result<(), Error> {
+        recorder.gpu.queue.write_buffer(&self.uniform, 0, &PatchUniform { map_near, gap }.uniform_bytes());
+        let key = ShaderKey::new("passes::patch_pyramid").with::<PatchUniform>();
         let first = recorder.gpu.compute_pipeline(&key.clone().feature("first", true), "reduce")?;
         let next = recorder.gpu.compute_pipeline(&key, "reduce")?;
         let [half, layers] = [self.patches.texture.width(), self.patches.texture.depth_or_array_layers()];

@@ -10,6 +10,7 @@ struct Patch {
     near: f64,
     slope: DVec2,
     residual: f64,
+    thick: f64,
     far: f64,
     share: f64,
     far_share: f64,
@@ -17,8 +18,16 @@ struct Patch {
 }
 
 impl Patch {
-    const NONE: Patch =
-        Patch { near: 0.0, slope: DVec2::ZERO, residual: 0.0, far: 0.0, share: 0.0, far_share: 0.0, side: 0 };
+    const NONE: Patch = Patch {
+        near: 0.0,
+        slope: DVec2::ZERO,
+        residual: 0.0,
+        thick: 0.0,
+        far: 0.0,
+        share: 0.0,
+        far_share: 0.0,
+        side: 0,
+    };
 
     fn plane(near: f64, slope: DVec2) -> Patch {
         Patch { near, slope, share: 1.0, ..Patch::NONE }
@@ -57,11 +66,14 @@ fn range(children: &[Patch; 4]) -> Option<(f64, f64)> {
     all.reduce(|(low, high), (q, _)| (low.min(q), high.max(q)))
 }
 
-/// A plane with the residual that some surfaces have of it.
+/// A plane with the residual that some surfaces have of it, and as thick as all of them or as their mean up to `GAP`.
 fn fitted(near: f64, slope: DVec2, of: &[Surface]) -> Patch {
     let plane = Patch::plane(near, slope);
     let residual = of.iter().map(|(i, _, p)| p.deviation(child_middle(*i), &plane)).fold(0.0, f64::max);
-    Patch { residual, ..plane }
+    let area = of.iter().map(|s| s.1).sum::<f64>();
+    let within_gap = of.iter().map(|(_, area, p)| area * p.thick.min(GAP)).sum::<f64>() / area;
+    let thinnest = of.iter().map(|s| s.2.thick).fold(f64::INFINITY, f64::min);
+    Patch { residual, thick: within_gap.max(thinnest), ..plane }
 }
 
 /// The four's patch, and the inverse distance from which on a surface of theirs is of its nearer one.
@@ -106,36 +118,41 @@ fn parted(children: &[Patch; 4], middle: f64, flat_counts: f64) -> Patch {
     }
 }
 
+/// Surfaces of a layer that are closer together than this are one whatever its thickness.
+const GAP: f64 = 0.125;
+
 const KERNEL: &str = "
     import package::shaders::patches::{Patch, merge_patches, pack_patch, unpack_patch, patch_top};
     fn patch_at(at: u32) -> Patch {
         return Patch(input[at], vec2(input[at + 1u], input[at + 2u]), input[at + 3u], input[at + 4u], input[at + 5u],
-                     input[at + 6u], u32(input[at + 7u]));
+                     input[at + 6u], input[at + 7u], u32(input[at + 8u]));
     }
     fn put(to: u32, p: Patch) {
         output[to] = p.near;
         output[to + 1u] = p.slope.x;
         output[to + 2u] = p.slope.y;
         output[to + 3u] = p.residual;
-        output[to + 4u] = p.far;
-        output[to + 5u] = p.share;
-        output[to + 6u] = p.far_share;
-        output[to + 7u] = f32(p.side);
+        output[to + 4u] = p.thick;
+        output[to + 5u] = p.far;
+        output[to + 6u] = p.share;
+        output[to + 7u] = p.far_share;
+        output[to + 8u] = f32(p.side);
     }
     fn evaluate(at: u32, to: u32) {
-        let merged = merge_patches(array(patch_at(at), patch_at(at + 8u), patch_at(at + 16u), patch_at(at + 24u)));
+        let merged = merge_patches(array(patch_at(at), patch_at(at + 9u), patch_at(at + 18u), patch_at(at + 27u)), 0.125);
         put(to, merged);
-        put(to + 8u, unpack_patch(pack_patch(merged)));
-        output[to + 16u] = patch_top(merged);
+        put(to + 9u, unpack_patch(pack_patch(merged)));
+        output[to + 18u] = patch_top(merged);
     }";
 
-fn numbers(p: &Patch) -> [f32; 8] {
-    [p.near, p.slope.x, p.slope.y, p.residual, p.far, p.share, p.far_share, f64::from(p.side)].map(|v| v as f32)
+fn numbers(p: &Patch) -> [f32; 9] {
+    let v = [p.near, p.slope.x, p.slope.y, p.residual, p.thick, p.far, p.share, p.far_share, f64::from(p.side)];
+    v.map(|v| v as f32)
 }
 
 fn patch_of(v: &[f32]) -> Patch {
-    let [near, x, y, residual, far, share, far_share] = std::array::from_fn(|i| f64::from(v[i]));
-    Patch { near, slope: DVec2::new(x, y), residual, far, share, far_share, side: v[7] as u32 }
+    let [near, x, y, residual, thick, far, share, far_share] = std::array::from_fn(|i| f64::from(v[i]));
+    Patch { near, slope: DVec2::new(x, y), residual, thick, far, share, far_share, side: v[8] as u32 }
 }
 
 /// Children that are planes, two surfaces, or nothing: of one plane, or each of its own, with and without residual.
@@ -148,7 +165,7 @@ fn inputs(count: usize) -> Vec<[Patch; 4]> {
         let (a, b) = (scale * unit().max(1e-3), scale * unit().max(1e-3));
         // Parts as they are kept.
         let steps = |share: f64, count: f64| (1.0 + share * (count - 2.0)).round() / count;
-        let one = Patch { residual: 0.02 * a * unit(), ..Patch::plane(a, slope) };
+        let one = Patch { residual: 0.02 * a * unit(), thick: a * (unit() - 0.5).max(0.0), ..Patch::plane(a, slope) };
         let two = Patch { near: a.max(b), far: a.min(b), share: steps(unit(), 255.0), side: 2, ..one };
         let p = match (i / 3 + k * (i / 11)) % 5 {
             0 => one,
@@ -170,7 +187,7 @@ fn inputs(count: usize) -> Vec<[Patch; 4]> {
 }
 
 fn on_gpu(inputs: &[[Patch; 4]]) -> Vec<Vec<f32>> {
-    evaluate(KERNEL, &inputs.iter().flatten().flat_map(numbers).collect::<Vec<f32>>(), 32, 17)
+    evaluate(KERNEL, &inputs.iter().flatten().flat_map(numbers).collect::<Vec<f32>>(), 36, 19)
 }
 
 fn worst_on_gpu(twin: impl Fn(&[Patch; 4], f64) -> Patch) -> Worst {
@@ -180,10 +197,11 @@ fn worst_on_gpu(twin: impl Fn(&[Patch; 4], f64) -> Patch) -> Worst {
         let got = patch_of(got);
         let unit = range(children).map_or(1.0, |r| r.1);
         let error = |exact: &Patch| {
-            let depths = [got.near - exact.near, got.far - exact.far, got.residual - exact.residual];
+            let surfaces = [got.near - exact.near, got.far - exact.far];
+            let depths = surfaces.into_iter().chain([got.residual - exact.residual, got.thick - exact.thick]);
             let slope = (got.slope - exact.slope).abs().max_element() / unit;
             let shares = (got.share - exact.share).abs().max((got.far_share - exact.far_share).abs());
-            depths.iter().fold(shares.max(slope), |w, e| w.max(e.abs() / unit))
+            depths.fold(shares.max(slope), |w, e| w.max(e.abs() / unit))
         };
         // Where two planes are as good as each other, either is right.
         let exact = [1.0 - 1e-6, 1.0 + 1e-6].map(|flat_counts| twin(children, flat_counts));
@@ -209,14 +227,16 @@ fn children_in_another_order_are_caught() {
 fn a_packed_patch_bounds_what_it_was() {
     let mut worst = [0.0f64; 3];
     for got in on_gpu(&inputs(4096)) {
-        let (p, packed) = (patch_of(&got), patch_of(&got[8..]));
+        let (p, packed) = (patch_of(&got), patch_of(&got[9..]));
         let unit = p.near.max(1e-30);
-        assert_eq!((packed.near, packed.far, packed.side), (p.near, p.far, p.side));
+        assert_eq!((packed.near, packed.side), (p.near, p.side));
+        assert!(packed.far <= p.far && packed.far >= p.far * (1.0 - 1.0 / 32768.0), "{p:?} {packed:?}");
+        assert!((packed.thick - p.thick).abs() <= 0.031 * p.thick, "{p:?} {packed:?}");
         let bend = (packed.slope - p.slope).abs();
         let spare = (packed.residual - p.residual - 0.5 * (bend.x + bend.y)) / unit;
         assert!(spare > -1e-9 && packed.top() >= p.top(), "short of {}: {p:?} {packed:?}", -spare);
         worst =
-            [worst[0].max(bend.max_element() / unit), worst[1].max(spare), worst[2].max(f64::from(got[16]) - p.top())];
+            [worst[0].max(bend.max_element() / unit), worst[1].max(spare), worst[2].max(f64::from(got[18]) - p.top())];
     }
     println!("slopes off by {:.1e}, residuals too large by {:.1e} of the inverse distance", worst[0], worst[1]);
     assert!(worst[0] < 3e-4 && worst[1] < 3e-3 && worst[2] < 1e-3, "{worst:?}");
@@ -226,7 +246,7 @@ fn a_packed_patch_bounds_what_it_was() {
 #[test]
 fn shares_are_packed_to_the_next_step() {
     for got in on_gpu(&inputs(4096)) {
-        let (p, packed) = (patch_of(&got), patch_of(&got[8..]));
+        let (p, packed) = (patch_of(&got), patch_of(&got[9..]));
         let is_there = |p: &Patch| (p.share > 0.0, p.far_share > 0.0);
         assert_eq!(is_there(&packed), is_there(&p), "{p:?} {packed:?}");
         let rest = (1.0 - p.share).max(1e-9);

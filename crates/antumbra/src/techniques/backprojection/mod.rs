@@ -112,7 +112,7 @@ impl Technique for Backprojection {
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
-        patches.record(recorder, maps, frame.frustum.near)?;
+        patches.record(recorder, maps, frame.frustum.near, maps.gap(frame, self.settings.apart))?;
         pyramid.record(recorder, map, frame.frustum.near)?;
         list.record(recorder, frame, map, pyramid, false)?;
         let look = |recorder: &mut Recorder, list: &PenumbraList, sharpness: &[Binding]| {
@@ -122,6 +122,7 @@ impl Technique for Backprojection {
                 penumbra_tiles: &list.tiles,
                 backprojection: &self.uniform,
                 patches: &patches.patches,
+                depth_layers: &maps.texture,
             };
             let set = frame.bindings(&[set, sharpness].concat());
             let work = if self.by_tiles { &list.tiles } else { &list.buffer };

@@ -62,10 +62,10 @@ crate::settings! {
         quality: Quality = Quality::Balanced, Kind::Choice { options: Quality::OPTIONS };
         /// Shadow map, texels a side.
         map: u32 = 2048, Kind::Integer { min: 16, max: 16384 };
-        /// Surfaces behind each other that each texel of the map keeps.
+        /// Layers behind each other that each texel of the map keeps: a surface each, or all between two.
         layers: u32 = 2, Kind::Integer { min: 1, max: 4 };
-        /// A surface is no layer of its own if the light moves it by fewer texels than this against that before it.
-        apart: f32 = 4.0, Kind::Number { min: 0.0, max: 1000.0 };
+        /// Surfaces are one layer if the light moves them by fewer texels than this against each other. 0 keeps each apart.
+        apart: f32 = 8.0, Kind::Number { min: 0.0, max: 1000.0 };
         /// Patches a side that the light is resolved into at least.
         window: f32 = 4.0, Kind::Number { min: 1.0, max: 256.0 };
         /// Pixels between those that are looked at first; the others follow where these do not tell them. 1 looks at all.
@@ -88,7 +88,7 @@ impl BackprojectionSettings {
             Quality::Balanced => balanced,
             Quality::Best => BackprojectionSettings {
                 layers: 4,
-                apart: 8.0,
+                apart: 4.0,
                 window: 16.0,
                 spacing: Spacing::S1,
                 bits: Bits::B1024,
