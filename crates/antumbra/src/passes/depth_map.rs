@@ -1,9 +1,9 @@
-//! The shadow map: depth of the nearest caster seen from a point of the light.
+//! The shadow map: depth of the nearest caster seen from a point of the light; or of the farthest.
 
 use crate::casters::{BatchLayout, Casters};
-use crate::passes::culling::{Culling, MapView};
+use crate::passes::culling::{Culling, MapView, Surfaces};
 use crate::passes::depth_layers::LayerShape;
-use crate::pipeline::{Binding, RenderTarget};
+use crate::pipeline::{Bindable, Binding, RenderTarget};
 use crate::recorder::{Recorder, depth_target};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
@@ -20,6 +20,28 @@ pub struct DepthMap {
     size: u32,
     view: wgpu::Buffer,
     culling: Culling,
+}
+
+/// What a texel of a map of the farthest surfaces holds where there is nothing: no surface is as near, at the near plane.
+pub const FARTHEST_NOTHING: f32 = 1.0;
+
+/// What is drawn into a map.
+pub(crate) struct Drawing<'a> {
+    /// Label of the pass.
+    pub label: &'a str,
+    /// What is drawn.
+    pub surfaces: Surfaces,
+    /// With another map of this size: not the nearest surface of a texel, but the farthest that lies before that map.
+    pub before: Option<&'a DepthMap>,
+    /// Buffers that every surface of a texel is handed to; see [`DepthLayers`](crate::passes::depth_layers::DepthLayers).
+    pub layers: Option<&'a [Binding<'a>]>,
+}
+
+impl<'a> Drawing<'a> {
+    /// The nearest of these surfaces.
+    pub fn of(label: &'a str, surfaces: Surfaces) -> Drawing<'a> {
+        Drawing { label, surfaces, before: None, layers: None }
+    }
 }
 
 impl DepthMap {
@@ -69,29 +91,39 @@ impl DepthMap {
 
     /// Draws the casters that `clip_from_world` holds.
     pub fn record(&self, recorder: &mut Recorder, casters: &Casters, clip_from_world: Mat4) -> Result<(), Error> {
-        self.draw(recorder, "depth map", casters, clip_from_world, None)
+        let drawing = Drawing::of("depth map", Surfaces::Casters);
+        self.draw(recorder, casters, clip_from_world, &drawing)
     }
 
-    /// The same, with every surface of a texel handed to the buffers of `layers`.
+    /// Draws what is asked for.
     pub(crate) fn draw(
         &self,
         recorder: &mut Recorder,
-        label: &str,
         casters: &Casters,
         clip_from_world: Mat4,
-        layers: Option<&[Binding]>,
+        drawing: &Drawing,
     ) -> Result<(), Error> {
         let view = MapView::new(clip_from_world);
         recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
-        self.culling.record(recorder, "cluster culling", casters, &self.view)?;
-        let target = RenderTarget { colors: Vec::new(), depth: Some(wgpu::CompareFunction::Greater), layers: 1 };
+        self.culling.record(recorder, "cluster culling", casters, drawing.surfaces, &self.view)?;
+        // Depth is reversed: what is far is small.
+        let (compare, nothing) = match drawing.before {
+            None => (wgpu::CompareFunction::Greater, 0.0),
+            Some(_) => (wgpu::CompareFunction::Less, FARTHEST_NOTHING),
+        };
+        let target = RenderTarget { depth: Some(compare), ..RenderTarget::default() };
         let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>().with::<LayerShape>();
-        let key = key.feature("layers", layers.is_some());
+        let key = key.feature("layers", drawing.layers.is_some()).feature("before", drawing.before.is_some());
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
         let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
         let set = bindings! { map_view: &self.view, visible: &self.culling.visible };
-        let set = [set, layers.unwrap_or_default()].concat();
-        recorder.render_pass(label, &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
+        let mut set = [set, drawing.layers.unwrap_or_default()].concat();
+        set.extend(drawing.before.map(|map| ("background", map.texture.resource())));
+        let cleared = wgpu::RenderPassDepthStencilAttachment {
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(nothing), store: wgpu::StoreOp::Store }),
+            ..depth_target(&self.texture.view)
+        };
+        recorder.render_pass(drawing.label, &[], Some(cleared), |gpu, pass| {
             for (i, batch) in casters.batches.iter().enumerate() {
                 let pipeline = if batch.masked { &masked } else { &opaque };
                 pass.set_pipeline(&pipeline.pipeline);
