@@ -1,9 +1,9 @@
-//! The shadow map: depth of the nearest caster seen from a point of the light; or of the farthest.
+//! The shadow map: depth of the nearest caster seen from a point of the light.
 
 use crate::casters::{BatchLayout, Casters};
 use crate::passes::culling::{Culling, MapView, Surfaces};
 use crate::passes::depth_layers::LayerShape;
-use crate::pipeline::{Bindable, Binding, RenderTarget};
+use crate::pipeline::{Binding, RenderTarget};
 use crate::recorder::{Recorder, depth_target};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
@@ -22,25 +22,31 @@ pub struct DepthMap {
     culling: Culling,
 }
 
-/// What a texel of a map of the farthest surfaces holds where there is nothing: no surface is as near, at the near plane.
-pub const FARTHEST_NOTHING: f32 = 1.0;
-
 /// What is drawn into a map.
 pub(crate) struct Drawing<'a> {
     /// Label of the pass.
     pub label: &'a str,
     /// What is drawn.
     pub surfaces: Surfaces,
-    /// With another map of this size: not the nearest surface of a texel, but the farthest that lies before that map.
-    pub before: Option<&'a DepthMap>,
+    /// Where the farthest surface of each texel is kept.
+    pub farthest: Option<Farthest<'a>>,
     /// Buffers that every surface of a texel is handed to; see [`DepthLayers`](crate::passes::depth_layers::DepthLayers).
     pub layers: Option<&'a [Binding<'a>]>,
+}
+
+/// The farthest surface of each texel that lies before another map of the same size.
+#[derive(Clone, Copy)]
+pub(crate) struct Farthest<'a> {
+    /// What it has to lie before.
+    pub before: &'a DepthMap,
+    /// Four bytes a texel, row by row: the bits of its depth turned over, 0 where there is nothing.
+    pub depths: &'a wgpu::Buffer,
 }
 
 impl<'a> Drawing<'a> {
     /// The nearest of these surfaces.
     pub fn of(label: &'a str, surfaces: Surfaces) -> Drawing<'a> {
-        Drawing { label, surfaces, before: None, layers: None }
+        Drawing { label, surfaces, farthest: None, layers: None }
     }
 }
 
@@ -106,24 +112,18 @@ impl DepthMap {
         let view = MapView::new(clip_from_world);
         recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
         self.culling.record(recorder, "cluster culling", casters, drawing.surfaces, &self.view)?;
-        // Depth is reversed: what is far is small.
-        let (compare, nothing) = match drawing.before {
-            None => (wgpu::CompareFunction::Greater, 0.0),
-            Some(_) => (wgpu::CompareFunction::Less, FARTHEST_NOTHING),
-        };
-        let target = RenderTarget { depth: Some(compare), ..RenderTarget::default() };
+        let target = RenderTarget { depth: Some(wgpu::CompareFunction::Greater), ..RenderTarget::default() };
         let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>().with::<LayerShape>();
-        let key = key.feature("layers", drawing.layers.is_some()).feature("before", drawing.before.is_some());
+        let key = key.feature("layers", drawing.layers.is_some()).feature("farthest", drawing.farthest.is_some());
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
         let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
         let set = bindings! { map_view: &self.view, visible: &self.culling.visible };
         let mut set = [set, drawing.layers.unwrap_or_default()].concat();
-        set.extend(drawing.before.map(|map| ("background", map.texture.resource())));
-        let cleared = wgpu::RenderPassDepthStencilAttachment {
-            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(nothing), store: wgpu::StoreOp::Store }),
-            ..depth_target(&self.texture.view)
-        };
-        recorder.render_pass(drawing.label, &[], Some(cleared), |gpu, pass| {
+        if let Some(Farthest { before, depths }) = drawing.farthest {
+            recorder.encoder.clear_buffer(depths, 0, None);
+            set.extend_from_slice(bindings! { background: &before.texture, farthest_depths: depths });
+        }
+        recorder.render_pass(drawing.label, &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
             for (i, batch) in casters.batches.iter().enumerate() {
                 let pipeline = if batch.masked { &masked } else { &opaque };
                 pass.set_pipeline(&pipeline.pipeline);

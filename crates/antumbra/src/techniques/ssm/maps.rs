@@ -1,8 +1,9 @@
 //! What the light's centre sees: the receivers, and the nearest and the farthest surfaces of the occluders.
 
 use crate::passes::culling::Surfaces;
-use crate::passes::depth_map::{DepthMap, Drawing};
+use crate::passes::depth_map::{DepthMap, Drawing, Farthest};
 use crate::recorder::Recorder;
+use crate::resource::storage_buffer;
 use crate::technique::Memory;
 use crate::{Casters, Error, Frame, Gpu};
 
@@ -13,7 +14,9 @@ use crate::{Casters, Error, Frame, Gpu};
 pub(super) struct Maps {
     pub receivers: DepthMap,
     pub nearest: DepthMap,
-    pub farthest: Option<DepthMap>,
+    /// The depths of the farthest surfaces, as in [`Farthest`]; 16 bytes where they are not asked for.
+    pub farthest: wgpu::Buffer,
+    passes: u32,
 }
 
 impl Maps {
@@ -27,37 +30,30 @@ impl Maps {
     ) -> Result<&'a Maps, Error> {
         if !slot.as_ref().is_some_and(|maps| maps.receivers.fits(size, casters)) {
             let map = || DepthMap::new(gpu, size, casters);
-            let farthest = if passes > 1 { Some(map()?) } else { None };
-            *slot = Some(Maps { receivers: map()?, nearest: map()?, farthest });
+            let texels = if passes > 1 { u64::from(size) * u64::from(size) } else { 0 };
+            let farthest = storage_buffer(gpu, "farthest occluders", 4 * texels);
+            *slot = Some(Maps { receivers: map()?, nearest: map()?, farthest, passes });
         }
         Ok(slot.as_ref().expect("just made"))
     }
 
-    /// Draws all of them.
+    /// Draws all of them, the triangles of the occluders once.
     pub fn record(&self, recorder: &mut Recorder, frame: &Frame) -> Result<(), Error> {
         let clip_from_world = frame.map_clip_from_world();
         let mut draw =
             |map: &DepthMap, drawing: &Drawing| map.draw(recorder, &frame.casters, clip_from_world, drawing);
         draw(&self.receivers, &Drawing::of("receiver map", Surfaces::Receivers))?;
+        let farthest = Farthest { before: &self.receivers, depths: &self.farthest };
         let occluders = Drawing::of("occluder maps", Surfaces::Occluders);
-        draw(&self.nearest, &occluders)?;
-        match &self.farthest {
-            Some(map) => draw(map, &Drawing { before: Some(&self.receivers), ..occluders }),
-            None => Ok(()),
-        }
-    }
-
-    /// The map of the farthest surfaces, or of the nearest where it is all there is.
-    pub fn last(&self) -> &DepthMap {
-        self.farthest.as_ref().unwrap_or(&self.nearest)
+        draw(&self.nearest, &Drawing { farthest: (self.passes > 1).then_some(farthest), ..occluders })
     }
 
     /// GPU memory by pass.
     pub fn memory(&self) -> Vec<Memory> {
         let labelled = |map: &DepthMap, label| map.memory().map(|m| relabelled(m, label));
-        let occluders = [Some(&self.nearest), self.farthest.as_ref()];
-        let occluders = occluders.into_iter().flatten().flat_map(|map| labelled(map, "occluder maps"));
-        occluders.chain(labelled(&self.receivers, "receiver map")).collect()
+        let farthest = Memory::new("occluder maps", self.farthest.size());
+        let maps = [labelled(&self.receivers, "receiver map"), labelled(&self.nearest, "occluder maps")];
+        maps.into_iter().flatten().chain([farthest]).collect()
     }
 }
 

@@ -120,7 +120,7 @@ impl Patches {
                     totals: &self.totals,
                     depth_map: &maps.receivers.texture,
                     nearest_occluders: &maps.nearest.texture,
-                    farthest_occluders: &maps.last().texture,
+                    farthest_occluders: &maps.farthest,
                     level_patches: &views[0],
                     level_tops: &views[1],
                     level_rising: &views[2],
