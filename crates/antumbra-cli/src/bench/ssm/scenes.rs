@@ -19,7 +19,7 @@ pub struct Occluder {
     /// Of its parts, in world space of the unscaled scene.
     parts: Vec<Instance>,
     bounds: Aabb,
-    is_flat: bool,
+    pub is_flat: bool,
 }
 
 /// Where the occluder is, and how large the light.

@@ -24,7 +24,7 @@ impl MapTruth {
     /// Asks at the receivers that the technique has drawn.
     pub fn of(gpu: &Gpu, scene: &Scene, tracer: &Tracer, frame: &Frame, ssm: &Ssm) -> Result<MapTruth, Error> {
         let Some(map) = ssm.receiver_map() else { return Ok(MapTruth { texels: Vec::new() }) };
-        let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&block_on(gpu.read_texture(map))?);
+        let depths: Vec<f32> = floats(&block_on(gpu.read_texture(map))?);
         let places: Vec<usize> = spread(depths.len()).filter(|&i| depths[i] > 0.0).collect();
         let side = map.texture.width();
         let point = |i: usize| receiver(frame, side, i, depths[i]);
@@ -41,14 +41,9 @@ impl MapTruth {
     /// Sum of absolute differences over the number of texels in shadow or penumbra [Atty 2006, section 5.2.1]; 0 where
     /// there is no shadow.
     pub fn error(&self, gpu: &Gpu, ssm: &Ssm) -> Result<f64, Error> {
-        let hidden: Vec<f32> = bytemuck::pod_collect_to_vec(&block_on(gpu.read_texture(ssm.soft_shadow_map()))?);
+        let hidden: Vec<f32> = floats(&block_on(gpu.read_texture(ssm.soft_shadow_map()))?);
         let sum: f64 = self.texels.iter().map(|&(i, truth)| (1.0 - f64::from(hidden[i]) - truth).abs()).sum();
         Ok(sum / self.texels.iter().filter(|(_, truth)| *truth < LIT).count().max(1) as f64)
-    }
-
-    /// Texels in shadow or penumbra among those that were asked.
-    pub fn shadowed(&self) -> usize {
-        self.texels.iter().filter(|(_, truth)| *truth < LIT).count()
     }
 }
 
@@ -78,4 +73,9 @@ fn visible(tracer: &Tracer, light: &RectLight, p: Vec3, seed: usize) -> f64 {
     let segments: Vec<[Vec3; 2]> = (0..RAYS).map(of_light).collect();
     let hidden = tracer.occluded_all(&segments).into_iter().filter(|h| *h).count();
     1.0 - hidden as f64 / f64::from(RAYS)
+}
+
+/// The numbers of a texture of 32-bit floats.
+pub fn floats(bytes: &[u8]) -> Vec<f32> {
+    bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect()
 }

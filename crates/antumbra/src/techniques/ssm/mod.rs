@@ -78,6 +78,12 @@ impl Ssm {
         self.maps.as_ref().map(|maps| &maps.receivers.texture)
     }
 
+    /// `Depth32Float`, of the same size: `near / z` of the nearest occluders, 0 where there is none. None before the first
+    /// frame.
+    pub fn occluder_map(&self) -> Option<&Texture> {
+        self.maps.as_ref().map(|maps| &maps.nearest.texture)
+    }
+
     /// Says once what makes a picture of this frame wrong.
     fn caution(&mut self, frame: &Frame) {
         for sentence in caution::of_frame(frame, &self.settings) {
