@@ -6,7 +6,7 @@ use antumbra_scene::Scene;
 use glam::{Vec2, Vec3};
 
 /// An occluder must be nearer to the light than what it is above by this part of its distance.
-const SEPARATION: f32 = 2e-3;
+const SEPARATION: f32 = 1e-4;
 
 /// Tangents beyond this are not looked at: 160 degrees.
 const MAX_TAN: f32 = 5.67;

@@ -145,6 +145,9 @@ fn push_batch(
             items.extend(items_of(first, mesh.triangle_count() as u32, range, role, color));
         }
     }
+    if items.is_empty() {
+        return;
+    }
     let layout = BatchLayout {
         vertex_offset: 0,
         vertex_stride: stride as u32,

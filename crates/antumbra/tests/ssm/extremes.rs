@@ -58,7 +58,7 @@ fn what_is_behind_the_light_casts_nothing() {
         assert!(picture.iter().all(|v| *v == 1.0), "{spec}");
     }
     // A light that faces away leaves all dark.
-    let away = light([0.0, 3.0, 0.0], [0.0, 6.0, 0.0], 0.5);
+    let away = RectLight { target: [0.0, 6.0, 0.0].into(), ..above() };
     for spec in SPECS {
         let scene = over_ground(vec![quad([0.0, 1.0, 0.0], [0.4, 0.4])], away);
         let picture = in_range(&scene, spec);

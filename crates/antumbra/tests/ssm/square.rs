@@ -1,7 +1,7 @@
 //! A square parallel to the light over the ground, whose shadow has a closed form.
 
 use crate::common::closed_form::Over;
-use crate::common::{camera, light};
+use crate::common::{camera, compared, light, truth};
 use crate::{SIZE, in_range};
 
 /// Mean absolute difference to the closed form over shadow and penumbra, and the largest one.
@@ -53,12 +53,10 @@ fn a_line_and_a_point_of_light_are_lights() {
     };
     for size in [[0.0, 0.0], [0.8, 0.0], [0.0, 0.8], [1.6, 0.1]] {
         let scene = scene(size);
-        let exact = OVER.picture(&scene, SIZE);
-        for spec in ["ssm:map=256", "ssm:map=256,hierarchy=false"] {
-            let picture = in_range(&scene, spec);
-            let each = || exact.iter().zip(&picture).filter_map(|(e, v)| Some((f64::from(*v) - (*e)?).abs()));
-            let mean = each().sum::<f64>() / each().count() as f64;
-            assert!(mean < 0.01, "{spec}, light {size:?}: mean difference {mean}");
+        let exact = truth(&scene, SIZE, 1024);
+        for spec in ["ssm:map=512", "ssm:map=512,window=16"] {
+            let figures = compared(&in_range(&scene, spec), &exact);
+            assert!(figures.rmse < 0.05, "{spec}, light {size:?}: {figures:?}");
         }
     }
 }
