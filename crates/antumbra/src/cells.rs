@@ -57,7 +57,8 @@ impl Cells {
     pub fn around(&self, t: Vec2, reach: i32) -> impl Iterator<Item = usize> {
         let at = ((t - self.low) / self.cell).floor();
         let inside = move |v: f32, d: i32| Some(v as i32 + d).filter(|v| (0..SIDE as i32).contains(v));
-        let of_row = move |y: i32| (-reach..=reach).filter_map(move |dx| Some(y as usize * SIDE + inside(at.x, dx)? as usize));
+        let of_row =
+            move |y: i32| (-reach..=reach).filter_map(move |dx| Some(y as usize * SIDE + inside(at.x, dx)? as usize));
         (-reach..=reach).filter_map(move |dy| inside(at.y, dy)).flat_map(of_row)
     }
 }

@@ -185,9 +185,8 @@ impl DeepestSurface {
         }
         // A large triangle may cast with its middle where its corners hang over nothing.
         if let Some(plane) = plane_of(&corners) {
-            self.cells.for_each(&polygon, |cell, t| {
-                cast(t, plane.dot(t.extend(1.0)), self.planes[cell].dot(t.extend(1.0)))
-            });
+            self.cells
+                .for_each(&polygon, |cell, t| cast(t, plane.dot(t.extend(1.0)), self.planes[cell].dot(t.extend(1.0))));
         }
         reach
     }

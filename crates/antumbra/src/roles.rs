@@ -57,8 +57,7 @@ impl TwoDeepest {
             }
         });
         let nothing = Surface { plane: Vec3::new(0.0, 0.0, f32::INFINITY), instance: usize::MAX };
-        let mut two =
-            TwoDeepest { cells: Cells::over(low, high.max(low)), surfaces: vec![[nothing; 2]; Cells::COUNT] };
+        let mut two = TwoDeepest { cells: Cells::over(low, high.max(low)), surfaces: vec![[nothing; 2]; Cells::COUNT] };
         for_each_triangle(scene, |corners, instance| two.add(corners, instance));
         two
     }

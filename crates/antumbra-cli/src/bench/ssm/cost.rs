@@ -71,8 +71,14 @@ fn ratio(stage: &Stage, what: &'static str, spec: &str, base: &str, paper: f64, 
 fn triangles(lab: &Lab, occluder: &Occluder, frames: u32, found: &mut Measured) -> Result<f64, CliError> {
     const ONE: &str = "ssm:map=128,passes=1,hierarchy=false";
     const TWO: &str = "ssm:map=128,passes=2,hierarchy=false";
-    let specs =
-        [ONE, TWO, "ssm:map=210", "pcss:map=512", "backprojection:quality=fast,map=512", "uniform-sampling:map=512,samples=16"];
+    let specs = [
+        ONE,
+        TWO,
+        "ssm:map=210",
+        "pcss:map=512",
+        "backprojection:quality=fast,map=512",
+        "uniform-sampling:map=512,samples=16",
+    ];
     let mut curves: Vec<Curve> = specs.iter().enumerate().map(|(i, s)| curve(s, i, i > 2, Vec::new())).collect();
     let mut factor = 0.0;
     for copies in COPIES {
@@ -167,9 +173,10 @@ fn lights(lab: &Lab, occluder: &Occluder, frames: u32, found: &mut Measured) -> 
     let error = "average error of the soft shadow map";
     found.parts.push(Part {
         title: "Milliseconds and error over the light's size (figure 24)".into(),
-        text: "Two passes. The paper: time grows with the light; a large light needs no large map for the same error, a \
+        text:
+            "Two passes. The paper: time grows with the light; a large light needs no large map for the same error, a \
                small light does."
-            .into(),
+                .into(),
         shown: vec![plot(x, MS, curves(|s| s.ms), None), plot(x, error, curves(|s| s.error), None)],
     });
     Ok(())
@@ -202,9 +209,10 @@ fn levels(stage: &Stage, found: &mut Measured) -> Result<(f64, f64), CliError> {
     ];
     found.parts.push(Part {
         title: "Levels against the flat map".into(),
-        text: "Light of 0.1, two passes. On a level a penumbra is `window` to twice as many texels wide, or narrower on \
+        text:
+            "Light of 0.1, two passes. On a level a penumbra is `window` to twice as many texels wide, or narrower on \
                the finest; 8 is the default. The paper hopes for it in its section 7."
-            .into(),
+                .into(),
         shown: vec![Shown::Table(Table { heads, groups })],
     });
     Ok(last)

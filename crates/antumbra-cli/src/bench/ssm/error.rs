@@ -121,13 +121,7 @@ pub fn measure(lab: &Lab, occluders: &[Occluder]) -> Result<(Vec<Part>, Vec<AtPa
 
 type Series<'a> = Vec<(&'static str, &'a Vec<(f64, [Sample; 2])>)>;
 
-fn part(
-    title: &str,
-    text: String,
-    x: &str,
-    all: &[(&Occluder, Sweeps)],
-    series: impl Fn(&Sweeps) -> Series,
-) -> Part {
+fn part(title: &str, text: String, x: &str, all: &[(&Occluder, Sweeps)], series: impl Fn(&Sweeps) -> Series) -> Part {
     let mut curves = Vec::new();
     for (i, (occluder, sweeps)) in all.iter().enumerate() {
         for (side, samples) in series(sweeps) {

@@ -107,7 +107,11 @@ impl Occluder {
             let to = Affine3A::from_translation(*at)
                 * Affine3A::from_scale(Vec3::splat(self.scale()))
                 * Affine3A::from_translation(-middle);
-            self.parts.iter().map(move |p| Instance { mesh: p.mesh + 1, world_from_object: to * p.world_from_object, ..*p })
+            self.parts.iter().map(move |p| Instance {
+                mesh: p.mesh + 1,
+                world_from_object: to * p.world_from_object,
+                ..*p
+            })
         });
         let ground_instance = Instance { receiver_only: true, ..whole(0) };
         let reach = places.iter().fold(0.0f32, |m, p| m.max(p.x.abs()).max(p.z.abs()));

@@ -51,8 +51,9 @@ pub fn part(errors: &[AtPaper], costs: &Costs) -> (Part, String) {
         ("met", "Whether it is"),
     ];
     let groups = vec![Group { title: String::new(), rows: rows.into_iter().map(cells).collect() }];
-    let text = "Errors are the paper's: the mean absolute difference to rays in the soft shadow map itself, over shadow and \
+    let text =
+        "Errors are the paper's: the mean absolute difference to rays in the soft shadow map itself, over shadow and \
                 penumbra [Atty 2006, section 5.2.1]."
-        .to_owned();
+            .to_owned();
     (Part { title: "Targets".into(), text, shown: vec![Shown::Table(Table { heads, groups })] }, lead)
 }

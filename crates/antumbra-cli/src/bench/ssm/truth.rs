@@ -31,7 +31,8 @@ impl MapTruth {
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let chunks = places.chunks(places.len().div_ceil(threads).max(1));
         let texels = std::thread::scope(|scope| {
-            let ask = |chunk: &[usize]| chunk.iter().map(|&i| (i, visible(tracer, &scene.light, point(i), i))).collect();
+            let ask =
+                |chunk: &[usize]| chunk.iter().map(|&i| (i, visible(tracer, &scene.light, point(i), i))).collect();
             let running: Vec<_> = chunks.map(|chunk| scope.spawn(move || -> Vec<_> { ask(chunk) })).collect();
             running.into_iter().flat_map(|t| t.join().expect("rays do not panic")).collect()
         });

@@ -41,13 +41,7 @@ impl SoftMap {
     }
 
     /// Adds up the shadows of all patches, from the coarsest level to the finest, and merges the layers.
-    pub fn record(
-        &self,
-        recorder: &mut Recorder,
-        frame: &Frame,
-        maps: &Maps,
-        patches: &Patches,
-    ) -> Result<(), Error> {
+    pub fn record(&self, recorder: &mut Recorder, frame: &Frame, maps: &Maps, patches: &Patches) -> Result<(), Error> {
         if let Some(blended) = &self.blended {
             self.draw_rectangles(recorder, frame, maps, patches, blended)?;
         }
@@ -72,7 +66,8 @@ impl SoftMap {
                 let is_coarsest = level + 1 == patches.shape.levels;
                 let pipeline = if is_coarsest { &coarsest } else { &finer };
                 let step = patches.levels.at(2 * level);
-                let (own, coarser) = (self.levels.array_mip(level), (!is_coarsest).then(|| self.levels.array_mip(level + 1)));
+                let (own, coarser) =
+                    (self.levels.array_mip(level), (!is_coarsest).then(|| self.levels.array_mip(level + 1)));
                 let blended = self.blended.as_ref().map(|b| b.array_mip(level));
                 let mut set = [&common[..], bindings! { step: &step, level_soft: &own }].concat();
                 if let Some(view) = &coarser {

@@ -1,7 +1,7 @@
 //! What makes a picture wrong, told before it is.
 
-use super::settings::Format;
 use super::SsmSettings;
+use super::settings::Format;
 use crate::Frame;
 
 /// The largest inverse distance of an occluder, in 1/metres, whose patches float16 does not lose, over a receiver at

@@ -40,8 +40,7 @@ impl Maps {
     /// Draws all of them, the triangles of the occluders once.
     pub fn record(&self, recorder: &mut Recorder, frame: &Frame) -> Result<(), Error> {
         let clip_from_world = frame.map_clip_from_world();
-        let mut draw =
-            |map: &DepthMap, drawing: &Drawing| map.draw(recorder, &frame.casters, clip_from_world, drawing);
+        let mut draw = |map: &DepthMap, drawing: &Drawing| map.draw(recorder, &frame.casters, clip_from_world, drawing);
         draw(&self.receivers, &Drawing::of("receiver map", Surfaces::Receivers))?;
         let farthest = Farthest { before: &self.receivers, depths: &self.farthest };
         let occluders = Drawing::of("occluder maps", Surfaces::Occluders);

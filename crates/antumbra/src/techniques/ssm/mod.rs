@@ -4,7 +4,7 @@
 mod accumulate;
 mod caution;
 mod maps;
-mod patches;
+pub(crate) mod patches;
 mod settings;
 
 use crate::pipeline::ComputePipeline;
