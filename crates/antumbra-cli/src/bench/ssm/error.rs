@@ -146,15 +146,15 @@ fn part(title: &str, text: String, x: &str, all: &[(&Occluder, Sweeps)], series:
 
 /// Figure 14: sums in 16 bits.
 pub fn half_precision(lab: &Lab, occluder: &Occluder) -> Result<Part, CliError> {
-    let stage = Stage::new(lab, occluder.scene(Place { light: 0.2, ..Place::default() }))?;
+    let stage = Stage::new(lab, occluder.scene(Place::default()))?;
     let spec = |map: u32, rest: &str| format!("ssm:map={map},passes=1,{rest}");
     let flat = |map, format| spec(map, &format!("hierarchy=false,format={format}"));
     let specs = [
         flat(128, "float32"),
         flat(128, "float16"),
-        flat(256, "float32"),
-        flat(256, "float16"),
-        spec(256, "format=float16"),
+        flat(512, "float32"),
+        flat(512, "float16"),
+        spec(512, "format=float16"),
     ];
     let row = |spec: &String| {
         let Sample { spec, error, lost, .. } = stage.sample(spec, 0)?;
@@ -169,7 +169,7 @@ pub fn half_precision(lab: &Lab, occluder: &Occluder) -> Result<Part, CliError> 
     let table = Table { heads, groups: vec![Group { title: occluder.name.clone(), rows }] };
     Ok(Part {
         title: "Sums in 16 bits (figure 14)".into(),
-        text: "Light of 0.2. A patch that hides less than 1/1024 of the light is lost when its part is added to a larger \
+        text: "Light of 0.1. A patch that hides less than 1/1024 of the light is lost when its part is added to a larger \
                sum; equation 4 says which. The paper: right with 128 x 128 texels, wrong with 512 x 512; it hopes for a \
                hierarchy, whose patches are never that small."
             .into(),
