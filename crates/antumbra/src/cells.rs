@@ -1,6 +1,8 @@
-//! A coarse grid over the part of a shadow map that surfaces take, for questions about a scene that are asked on the CPU.
+//! A coarse grid over the part of a shadow map that surfaces take, for questions about a scene that are asked on the
+//! CPU.
 //!
-//! All is measured in the map's own coordinates, tangents xy / z and inverse distance 1 / z, in which planes are affine.
+//! All is measured in the map's own coordinates, tangents xy / z and inverse distance 1 / z, in which planes are
+//! affine.
 
 use antumbra_scene::Scene;
 use glam::{Vec2, Vec3, Vec4};

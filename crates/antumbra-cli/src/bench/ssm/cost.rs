@@ -1,5 +1,5 @@
-//! What milliseconds depend on: figures 21 to 25, the second pass, levels against the flat map, gathering against blending,
-//! and the paper's way over the CPU.
+//! What milliseconds depend on: figures 21 to 25, the second pass, levels against the flat map, gathering against
+//! blending, and the paper's way over the CPU.
 
 use super::super::kit::{Group, Lab, Part, Ratio, Shown, Table};
 use super::readback;
@@ -143,8 +143,8 @@ fn maps(stage: &Stage, frames: u32, found: &mut Measured) -> Result<f64, CliErro
     found.parts.push(Part {
         title: "Texels of the map (figure 22)".into(),
         text: "Light of 0.1. The paper: linear in texels, since their transfer to the CPU dominates; 10 to 50 ms for \
-               128 x 128 and 256 x 256, 150 ms for 512 x 512. Without the transfer the flat map grows with the square of \
-               texels, as each has a rectangle of more texels; levels grow with texels."
+               128 x 128 and 256 x 256, 150 ms for 512 x 512. Without the transfer the flat map grows with the square \
+               of texels, as each has a rectangle of more texels; levels grow with texels."
             .into(),
         shown: vec![plot("texels of the map", MS, curves, Some(("x", 1.0)))],
     });
@@ -248,9 +248,9 @@ fn over_the_cpu(stage: &Stage, frames: u32, found: &mut Measured) -> Result<f64,
     ];
     found.parts.push(Part {
         title: "Without the CPU".into(),
-        text: "One pass, light of 0.1. The paper's way reads the occluder map back, makes the rectangles on the CPU and \
-               blends them; it names the transfer as its bottleneck. On a software adapter the transfer costs nothing and \
-               the rectangles most."
+        text: "One pass, light of 0.1. The paper's way reads the occluder map back, makes the rectangles on the CPU \
+               and blends them; it names the transfer as its bottleneck. On a software adapter the transfer costs \
+               nothing and the rectangles most."
             .into(),
         shown: vec![Shown::Table(Table { heads, groups: vec![Group { title: stage.scene.name.clone(), rows }] })],
     });

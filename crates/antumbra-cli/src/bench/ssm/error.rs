@@ -75,8 +75,8 @@ pub fn measure(lab: &Lab, occluders: &[Occluder]) -> Result<(Vec<Part>, Vec<AtPa
             "Size of the map (figure 17)",
             format!(
                 "Light of 0.1. Up to {LARGEST_FLAT} texels a side one flat map as in the paper, above it levels with \
-                 window=16, which agree with the flat map to about 0.001 (see the levels). The paper: falls until about \
-                 200 x 200 and is flat above; spikes on the square, whose edges lie along the map's; two passes \
+                 window=16, which agree with the flat map to about 0.001 (see the levels). The paper: falls until \
+                 about 200 x 200 and is flat above; spikes on the square, whose edges lie along the map's; two passes \
                  consistently below one on closed meshes, the same on the square; axis of 0 to 0.08.",
             ),
             "texels a side of the map",
@@ -94,8 +94,8 @@ pub fn measure(lab: &Lab, occluders: &[Occluder]) -> Result<(Vec<Part>, Vec<AtPa
         ),
         part(
             "Occluder moved sideways (figure 19)",
-            "Map of 128 x 128, light of 0.1. The paper: smallest under the light, growing sideways, a little different to \
-             the left (broken lines) and to the right on meshes that are not symmetric."
+            "Map of 128 x 128, light of 0.1. The paper: smallest under the light, growing sideways, a little \
+             different to the left (broken lines) and to the right on meshes that are not symmetric."
                 .into(),
             "distance from under the light's centre",
             &all,
@@ -169,9 +169,9 @@ pub fn half_precision(lab: &Lab, occluder: &Occluder) -> Result<Part, CliError> 
     let table = Table { heads, groups: vec![Group { title: occluder.name.clone(), rows }] };
     Ok(Part {
         title: "Sums in 16 bits (figure 14)".into(),
-        text: "Light of 0.1. A patch that hides less than 1/1024 of the light is lost when its part is added to a larger \
-               sum; equation 4 says which. The paper: right with 128 x 128 texels, wrong with 512 x 512; it hopes for a \
-               hierarchy, whose patches are never that small."
+        text: "Light of 0.1. A patch that hides less than 1/1024 of the light is lost when its part is added to a \
+               larger sum; equation 4 says which. The paper: right with 128 x 128 texels, wrong with 512 x 512; it \
+               hopes for a hierarchy, whose patches are never that small."
             .into(),
         shown: vec![Shown::Table(table)],
     })

@@ -1,4 +1,5 @@
-//! Soft shadow maps: the paper's curves of error and cost, what gathering on levels gains, and the paper's way over the CPU.
+//! Soft shadow maps: the paper's curves of error and cost, what gathering on levels gains, and the paper's way over the
+//! CPU.
 
 mod cost;
 mod error;
@@ -69,8 +70,8 @@ fn short(name: &str) -> String {
 fn pictures(trials: &[Trial]) -> Part {
     Part {
         title: "The scenes".into(),
-        text: "The occluders under a light of 0.1 at a height of 0.75, shaded with the truth. What the techniques make of \
-               them is in the CSV: there occluders count too, which take no shadow by `ssm`."
+        text: "The occluders under a light of 0.1 at a height of 0.75, shaded with the truth. What the techniques \
+               make of them is in the CSV: there occluders count too, which take no shadow by `ssm`."
             .into(),
         shown: vec![Shown::Pictures((0..trials.len()).collect())],
     }

@@ -37,8 +37,8 @@ pub fn part(errors: &[AtPaper], costs: &Costs) -> (Part, String) {
     let missed: Vec<&str> = rows.iter().filter(|r| !r.met).map(|r| r.what.as_str()).collect();
     let missed = if missed.is_empty() { String::new() } else { format!("; missed: {}", missed.join(", ")) };
     let lead = format!(
-        "{met} of {} targets are met{missed}. With 512 x 512 texels levels take 1/{:.0} of the flat map's time, and their \
-         error is {:+.4} off its.",
+        "{met} of {} targets are met{missed}. With 512 x 512 texels levels take 1/{:.0} of the flat map's time, and \
+         their error is {:+.4} off its.",
         rows.len(),
         costs.levels_speed,
         costs.levels_error

@@ -5,8 +5,8 @@ use super::settings::Format;
 use crate::Frame;
 
 /// The largest inverse distance of an occluder, in 1/metres, whose patches float16 does not lose, over a receiver at
-/// `receiver_q`: 1/zO < 1/zR + 64 tan a / (N L) [Atty 2006, equation 4]. `tan_half` is the tangent of the map's half angle,
-/// `size` its texels, `light` the light's width in metres.
+/// `receiver_q`: 1/zO < 1/zR + 64 tan a / (N L) [Atty 2006, equation 4]. `tan_half` is the tangent of the map's half
+/// angle, `size` its texels, `light` the light's width in metres.
 pub fn largest_float16_q(receiver_q: f32, tan_half: f32, size: f32, light: f32) -> f32 {
     receiver_q + 64.0 * tan_half / (size * light)
 }
@@ -32,8 +32,8 @@ pub(super) fn of_frame(frame: &Frame, settings: &SsmSettings) -> Vec<String> {
         // The paper's condition is for squares; the light may be longer than wide.
         if 1.0 / nearest > limit(0).max(limit(1)) {
             said.push(format!(
-                "ssm: with format=float16 patches nearer to the light than {:.3} m may be lost [Atty 2006, equation 4]; \
-                 a smaller `map`, hierarchy=true or format=float32 keeps them",
+                "ssm: with format=float16 patches nearer to the light than {:.3} m may be lost [Atty 2006, equation \
+                 4]; a smaller `map`, hierarchy=true or format=float32 keeps them",
                 1.0 / limit(0).max(limit(1))
             ));
         }

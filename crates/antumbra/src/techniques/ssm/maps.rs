@@ -9,8 +9,8 @@ use crate::{Casters, Error, Frame, Gpu};
 
 /// The receiver map and one or two occluder maps [Atty 2006, sections 3.2 and 3.5].
 ///
-/// The paper's second pass keeps the farthest back faces. Here it is the farthest surface that lies before the receivers,
-/// whatever way its triangles are wound: on a closed mesh that is the same.
+/// The paper's second pass keeps the farthest back faces. Here it is the farthest surface that lies before the
+/// receivers, whatever way its triangles are wound: on a closed mesh that is the same.
 pub(super) struct Maps {
     pub receivers: DepthMap,
     pub nearest: DepthMap,

@@ -67,19 +67,20 @@ fn blendable(gpu: &Gpu, settings: SsmSettings) -> SsmSettings {
 }
 
 impl Ssm {
-    /// `R32Float`, `map` x `map` texels over the frame's frustum, row 0 at its smallest y: the part of the light that is
-    /// hidden from the receiver at each texel. Filled by `record`.
+    /// `R32Float`, `map` x `map` texels over the frame's frustum, row 0 at its smallest y: the part of the light that
+    /// is hidden from the receiver at each texel. Filled by `record`.
     pub fn soft_shadow_map(&self) -> &Texture {
         &self.soft.merged
     }
 
-    /// `Depth32Float`, of the same size: `near / z` of the receivers, 0 where there is none. None before the first frame.
+    /// `Depth32Float`, of the same size: `near / z` of the receivers, 0 where there is none. None before the first
+    /// frame.
     pub fn receiver_map(&self) -> Option<&Texture> {
         self.maps.as_ref().map(|maps| &maps.receivers.texture)
     }
 
-    /// `Depth32Float`, of the same size: `near / z` of the nearest occluders, 0 where there is none. None before the first
-    /// frame.
+    /// `Depth32Float`, of the same size: `near / z` of the nearest occluders, 0 where there is none. None before the
+    /// first frame.
     pub fn occluder_map(&self) -> Option<&Texture> {
         self.maps.as_ref().map(|maps| &maps.nearest.texture)
     }
