@@ -29,8 +29,7 @@ crate::settings! {
         map: u32 = 512, Kind::Integer { min: 1, max: 8192 };
         /// 1: the nearest surfaces of occluders cast. 2: the farthest do as well, and the darker shadow counts.
         passes: u32 = 2, Kind::Integer { min: 1, max: 2 };
-        /// Whether patches with a wide penumbra are merged into fewer ones on coarser maps. False: the paper's single
-        /// map.
+        /// Whether patches with a wide penumbra go to coarser maps, fewer and larger. False: the paper's single map.
         hierarchy: bool = true, Kind::Toggle;
         /// With `hierarchy`: texels that a penumbra is wide at least on the level where its patch is put.
         window: u32 = 8, Kind::Integer { min: 2, max: 64 };
