@@ -4,7 +4,7 @@
 //!
 //!     cargo run --example bring_your_own_renderer -- backprojection shadow.ppm
 
-use antumbra::casters::{BorrowedMesh, Indices, Transforms};
+use antumbra::casters::{BorrowedMesh, Indices, Role, Transforms};
 use antumbra::{Aabb, Casters, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Spec, View, frame};
 use glam::{Mat4, Quat, Vec2, Vec3};
 use std::{error::Error, sync::Arc};
@@ -104,7 +104,7 @@ pub async fn render(technique: &str) -> Result<(Vec<f32>, Vec<u8>), Box<dyn Erro
         triangle_count: 12,
         transforms: Transforms { buffer: &host.transforms, offset: 0, stride: 64, count: instances().len() as u32 },
         bounds,
-        receiver_only: false,
+        role: Role::Caster,
         mask: None,
     };
     let casters = Arc::new(Casters::borrow(&gpu, &[mesh])?);

@@ -43,6 +43,18 @@ pub struct Transforms<'a> {
     pub count: u32,
 }
 
+/// What a mesh does in the play of shadows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Role {
+    /// Casts shadows and takes them. An occluder where a technique parts the scene into occluders and receivers (`ssm`).
+    #[default]
+    Caster,
+    /// The same, but a receiver where the scene is parted: the ground, and what is above no other surface.
+    Ground,
+    /// Takes shadows and casts none, whatever the technique.
+    Receiver,
+}
+
 /// Three corners a triangle, in the order of the index buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct Indices<'a> {
@@ -84,8 +96,8 @@ pub struct BorrowedMesh<'a> {
     pub transforms: Transforms<'a>,
     /// World-space box around all instances; fits the shadow frustum.
     pub bounds: Aabb,
-    /// True if it takes shadows and casts none.
-    pub receiver_only: bool,
+    /// Whether it casts, and its part where a scene is parted.
+    pub role: Role,
     /// Holes, for foliage.
     pub mask: Option<Mask<'a>>,
 }
@@ -108,7 +120,7 @@ pub(crate) struct Batch {
 pub(crate) struct Item {
     pub first_triangle: u32,
     pub triangle_count: u32,
-    pub receiver_only: bool,
+    pub role: Role,
     pub instance: u32,
     /// sRGB, 8 bits a channel.
     pub color: [u8; 4],
@@ -116,7 +128,11 @@ pub(crate) struct Item {
 
 impl Item {
     fn words(&self) -> [u32; 4] {
-        let flags = u32::from(self.receiver_only) << 16;
+        let flags = match self.role {
+            Role::Caster => 0,
+            Role::Ground => 1 << 17,
+            Role::Receiver => 3 << 16,
+        };
         [self.first_triangle, self.triangle_count | flags, self.instance, u32::from_le_bytes(self.color)]
     }
 }
@@ -126,14 +142,14 @@ pub(crate) fn items_of(
     first: u32,
     triangles: u32,
     instances: std::ops::Range<u32>,
-    receiver_only: bool,
+    role: Role,
     color: [u8; 4],
 ) -> impl Iterator<Item = Item> {
     instances.flat_map(move |instance| {
         (0..triangles.div_ceil(CLUSTER_TRIANGLES)).map(move |c| Item {
             first_triangle: first + c * CLUSTER_TRIANGLES,
             triangle_count: (triangles - c * CLUSTER_TRIANGLES).min(CLUSTER_TRIANGLES),
-            receiver_only,
+            role,
             instance,
             color,
         })
@@ -148,6 +164,7 @@ pub struct Casters {
     pub(crate) cluster_bounds: wgpu::Buffer,
     triangle_count: u64,
     bounds: Aabb,
+    occluder_bounds: Aabb,
 }
 
 impl Casters {
@@ -157,7 +174,7 @@ impl Casters {
         let mut builder = CastersBuilder::new(gpu);
         for (index, mesh) in meshes.iter().enumerate() {
             check(mesh).map_err(|message| Error::Casters { mesh: index, message })?;
-            let items = items_of(0, mesh.triangle_count, 0..mesh.transforms.count, mesh.receiver_only, [255; 4]);
+            let items = items_of(0, mesh.triangle_count, 0..mesh.transforms.count, mesh.role, [255; 4]);
             let layout = BatchLayout {
                 vertex_offset: (mesh.position_offset / 4) as u32,
                 vertex_stride: (mesh.vertex_stride / 4) as u32,
@@ -176,6 +193,9 @@ impl Casters {
             let buffers = [mesh.vertices, mesh.indices.map_or(mesh.vertices, |i| i.buffer), mesh.transforms.buffer];
             builder.push(layout, buffers.map(Clone::clone), mesh.mask.map(|m| (m.texture, m.sampler)), items);
             builder.bounds = builder.bounds.union(&mesh.bounds);
+            if mesh.role == Role::Caster {
+                builder.occluder_bounds = builder.occluder_bounds.union(&mesh.bounds);
+            }
         }
         builder.finish()
     }
@@ -195,6 +215,11 @@ impl Casters {
         self.bounds
     }
 
+    /// World-space box around what is an occluder where the scene is parted ([`Role::Caster`]); empty if nothing is.
+    pub fn occluder_bounds(&self) -> Aabb {
+        self.occluder_bounds
+    }
+
     /// Measures the clusters again after vertices have moved in their buffers.
     pub fn refit(&self, gpu: &Gpu) -> Result<(), Error> {
         crate::passes::cluster_bounds::measure(gpu, self)
@@ -209,6 +234,7 @@ pub(crate) struct CastersBuilder<'a> {
     triangle_count: u64,
     white: (wgpu::TextureView, wgpu::Sampler),
     pub bounds: Aabb,
+    pub occluder_bounds: Aabb,
 }
 
 impl<'a> CastersBuilder<'a> {
@@ -229,6 +255,7 @@ impl<'a> CastersBuilder<'a> {
             triangle_count: 0,
             white: (white.view, sampler),
             bounds: Aabb::EMPTY,
+            occluder_bounds: Aabb::EMPTY,
         }
     }
 
@@ -270,6 +297,7 @@ impl<'a> CastersBuilder<'a> {
             batches: self.batches,
             triangle_count: self.triangle_count,
             bounds: self.bounds,
+            occluder_bounds: self.occluder_bounds,
         };
         casters.refit(self.gpu)?;
         Ok(casters)

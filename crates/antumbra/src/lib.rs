@@ -35,6 +35,7 @@
 #![deny(missing_docs)]
 
 pub mod casters;
+mod cells;
 mod error;
 pub mod fit;
 pub mod frame;
@@ -43,6 +44,7 @@ pub mod passes;
 pub mod pipeline;
 pub mod recorder;
 pub mod resource;
+pub mod roles;
 pub mod scene;
 pub mod settings;
 pub mod shader;

@@ -75,6 +75,14 @@ pub struct RenderTarget {
     pub depth: Option<wgpu::CompareFunction>,
     /// Layers that are drawn at once; 1 is an ordinary pass.
     pub layers: u32,
+    /// Whether colours are added to what is there.
+    pub adds: bool,
+}
+
+impl Default for RenderTarget {
+    fn default() -> Self {
+        RenderTarget { colors: Vec::new(), depth: None, layers: 1, adds: false }
+    }
 }
 
 impl RenderTarget {
@@ -171,7 +179,11 @@ impl PipelineCache {
         let program = Program::compose(key)?;
         let module = shader_module(device, key, &program);
         let has_fragment = program.entry_points().any(|e| e == "fragment");
-        let colors: Vec<_> = target.colors.iter().map(|&format| Some(format.into())).collect();
+        let one = wgpu::BlendFactor::One;
+        let sum = wgpu::BlendComponent { src_factor: one, dst_factor: one, operation: wgpu::BlendOperation::Add };
+        let blend = target.adds.then_some(wgpu::BlendState { color: sum, alpha: sum });
+        let color = |&format| Some(wgpu::ColorTargetState { format, blend, write_mask: wgpu::ColorWrites::ALL });
+        let colors: Vec<_> = target.colors.iter().map(color).collect();
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some(key.module),
             layout: None,

@@ -1,10 +1,11 @@
 //! Drawing a whole [`Scene`]: geometry buffer, technique, picture. What a host does, for programs that have no renderer.
 
-use crate::casters::{BatchLayout, CastersBuilder, items_of};
+use crate::casters::{BatchLayout, CastersBuilder, Role, items_of};
 use crate::passes::{geometry_buffer::GeometryBuffer, picture::Picture};
 use crate::resource::{Texture, buffer_of};
+use crate::roles::roles;
 use crate::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, ShadowFrustum, Technique, View, frame};
-use antumbra_scene::{Instance, Material, Mesh, Scene, Wrap};
+use antumbra_scene::{Aabb, Material, Mesh, Scene, Wrap};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
 
@@ -77,6 +78,7 @@ impl SceneRenderer {
 /// Puts a scene's triangles on the GPU: all plain meshes in one batch, one batch more for each texture.
 pub fn upload(gpu: &Gpu, scene: &Scene) -> Result<Casters, Error> {
     let mut builder = CastersBuilder::new(gpu);
+    let roles = roles(scene);
     let mut groups: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
     for (index, mesh) in scene.meshes.iter().enumerate() {
         let key = scene.materials[mesh.material].texture.as_ref().map(|_| mesh.material);
@@ -87,10 +89,16 @@ pub fn upload(gpu: &Gpu, scene: &Scene) -> Result<Casters, Error> {
     }
     for (material, meshes) in &groups {
         for chunk in split(gpu, scene, meshes) {
-            push_batch(gpu, &mut builder, scene, material.map(|m| &scene.materials[m]), chunk);
+            push_batch(gpu, &mut builder, scene, &roles, material.map(|m| &scene.materials[m]), chunk);
         }
     }
     builder.bounds = scene.bounds();
+    let occluders = scene.instances.iter().zip(&roles).filter(|(_, role)| **role == Role::Caster);
+    builder.occluder_bounds = occluders.fold(Aabb::EMPTY, |bounds, (i, _)| {
+        let mesh = &scene.meshes[i.mesh];
+        let placed = mesh.indices.iter().map(|&k| i.world_from_object.transform_point3(mesh.positions[k as usize]));
+        bounds.union(&Aabb::of_points(placed))
+    });
     builder.finish()
 }
 
@@ -112,7 +120,14 @@ fn split<'a>(gpu: &Gpu, scene: &Scene, meshes: &'a [usize]) -> Vec<&'a [usize]> 
     chunks
 }
 
-fn push_batch(gpu: &Gpu, builder: &mut CastersBuilder, scene: &Scene, textured: Option<&Material>, meshes: &[usize]) {
+fn push_batch(
+    gpu: &Gpu,
+    builder: &mut CastersBuilder,
+    scene: &Scene,
+    roles: &[Role],
+    textured: Option<&Material>,
+    meshes: &[usize],
+) {
     let (mut words, mut indices, mut transforms, mut items) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let stride = if textured.is_some() { 5 } else { 3 };
     for &m in meshes {
@@ -122,13 +137,16 @@ fn push_batch(gpu: &Gpu, builder: &mut CastersBuilder, scene: &Scene, textured: 
         push_vertices(&mut words, mesh, textured.is_some());
         indices.extend(clustered(mesh).into_iter().flatten().map(|i| i + base));
         let color = srgb(scene.materials[mesh.material].base_color.truncate());
-        for receiver_only in [false, true] {
-            let placed = |i: &&Instance| i.mesh == m && i.receiver_only == receiver_only;
+        for role in [Role::Caster, Role::Ground, Role::Receiver] {
+            let placed = scene.instances.iter().zip(roles).filter(|(i, r)| i.mesh == m && **r == role);
             let from = transforms.len() as u32;
-            transforms.extend(scene.instances.iter().filter(placed).map(|i| Mat4::from(i.world_from_object)));
+            transforms.extend(placed.map(|(i, _)| Mat4::from(i.world_from_object)));
             let range = from..transforms.len() as u32;
-            items.extend(items_of(first, mesh.triangle_count() as u32, range, receiver_only, color));
+            items.extend(items_of(first, mesh.triangle_count() as u32, range, role, color));
         }
+    }
+    if items.is_empty() {
+        return;
     }
     let layout = BatchLayout {
         vertex_offset: 0,

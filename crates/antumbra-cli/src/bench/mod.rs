@@ -5,13 +5,14 @@
 mod adaptive;
 mod backprojection;
 pub mod kit;
+mod ssm;
 
 use crate::error::CliError;
 use antumbra::settings::nearest;
 use kit::{Findings, Lab};
 
 /// Every suite.
-pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE];
+pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE, ssm::SUITE];
 
 /// What is measured of a paper.
 #[derive(Debug)]

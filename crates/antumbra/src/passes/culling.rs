@@ -24,6 +24,17 @@ impl MapView {
     }
 }
 
+/// Which clusters are kept.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Surfaces {
+    /// What casts.
+    Casters,
+    /// What is an occluder where the scene is parted into occluders and receivers.
+    Occluders,
+    /// What is a receiver there.
+    Receivers,
+}
+
 /// Bytes of one set of draw arguments with its count of triangles, padded to the offset that bindings need.
 const DRAW_STRIDE: u64 = 256;
 
@@ -65,15 +76,20 @@ impl Culling {
         batch as u64 * DRAW_STRIDE
     }
 
-    /// Finds the clusters that cast and touch the frustum.
+    /// Finds the clusters of these surfaces that touch the frustum.
     pub fn record(
         &self,
         recorder: &mut Recorder,
         label: &str,
         casters: &Casters,
+        surfaces: Surfaces,
         view: &wgpu::Buffer,
     ) -> Result<(), Error> {
-        let key = ShaderKey::new("passes::culling").with::<MapView>().with::<BatchLayout>();
+        let key = ShaderKey::new("passes::culling")
+            .feature("occluders", surfaces == Surfaces::Occluders)
+            .feature("receivers", surfaces == Surfaces::Receivers)
+            .with::<MapView>()
+            .with::<BatchLayout>();
         let pipeline = recorder.gpu.compute_pipeline(&key, "cull")?;
         recorder.encoder.copy_buffer_to_buffer(&self.empty_draws, 0, &self.draws, 0, self.draws.size());
         recorder.compute_pass(label, |gpu, pass| {

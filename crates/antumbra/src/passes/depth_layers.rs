@@ -18,7 +18,8 @@
 //! has k, and two more where surfaces are left out.
 
 use crate::casters::Casters;
-use crate::passes::depth_map::DepthMap;
+use crate::passes::culling::Surfaces;
+use crate::passes::depth_map::{DepthMap, Drawing};
 use crate::recorder::{Recorder, Work};
 use crate::resource::{Texture, storage_buffer, uniform};
 use crate::shader::{HostStruct, ShaderKey};
@@ -122,7 +123,8 @@ impl DepthLayers {
         let shape = LayerShape { gap, ..self.shape };
         recorder.gpu.queue.write_buffer(&self.shape_buffer, 0, &shape.uniform_bytes());
         let collected = bindings! { nearest_depths: &self.depths, layer_shape: &self.shape_buffer };
-        self.nearest.draw(recorder, "depth layers", &frame.casters, frame.map_clip_from_world(), Some(collected))?;
+        let drawing = Drawing { layers: Some(collected), ..Drawing::of("depth layers", Surfaces::Casters) };
+        self.nearest.draw(recorder, &frame.casters, frame.map_clip_from_world(), &drawing)?;
         let key = ShaderKey::new("passes::depth_layers").with::<LayerShape>();
         let merge = recorder.gpu.compute_pipeline(&key, "merge_layers")?;
         let set = bindings! {

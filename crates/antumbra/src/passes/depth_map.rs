@@ -1,7 +1,7 @@
 //! The shadow map: depth of the nearest caster seen from a point of the light.
 
 use crate::casters::{BatchLayout, Casters};
-use crate::passes::culling::{Culling, MapView};
+use crate::passes::culling::{Culling, MapView, Surfaces};
 use crate::passes::depth_layers::LayerShape;
 use crate::pipeline::{Binding, RenderTarget};
 use crate::recorder::{Recorder, depth_target};
@@ -20,6 +20,34 @@ pub struct DepthMap {
     size: u32,
     view: wgpu::Buffer,
     culling: Culling,
+}
+
+/// What is drawn into a map.
+pub(crate) struct Drawing<'a> {
+    /// Label of the pass.
+    pub label: &'a str,
+    /// What is drawn.
+    pub surfaces: Surfaces,
+    /// Where the farthest surface of each texel is kept.
+    pub farthest: Option<Farthest<'a>>,
+    /// Buffers that every surface of a texel is handed to; see [`DepthLayers`](crate::passes::depth_layers::DepthLayers).
+    pub layers: Option<&'a [Binding<'a>]>,
+}
+
+/// The farthest surface of each texel that lies before another map of the same size.
+#[derive(Clone, Copy)]
+pub(crate) struct Farthest<'a> {
+    /// What it has to lie before.
+    pub before: &'a DepthMap,
+    /// Four bytes a texel, row by row: the bits of its depth turned over, 0 where there is nothing.
+    pub depths: &'a wgpu::Buffer,
+}
+
+impl<'a> Drawing<'a> {
+    /// The nearest of these surfaces.
+    pub fn of(label: &'a str, surfaces: Surfaces) -> Drawing<'a> {
+        Drawing { label, surfaces, farthest: None, layers: None }
+    }
 }
 
 impl DepthMap {
@@ -69,29 +97,33 @@ impl DepthMap {
 
     /// Draws the casters that `clip_from_world` holds.
     pub fn record(&self, recorder: &mut Recorder, casters: &Casters, clip_from_world: Mat4) -> Result<(), Error> {
-        self.draw(recorder, "depth map", casters, clip_from_world, None)
+        let drawing = Drawing::of("depth map", Surfaces::Casters);
+        self.draw(recorder, casters, clip_from_world, &drawing)
     }
 
-    /// The same, with every surface of a texel handed to the buffers of `layers`.
+    /// Draws what is asked for.
     pub(crate) fn draw(
         &self,
         recorder: &mut Recorder,
-        label: &str,
         casters: &Casters,
         clip_from_world: Mat4,
-        layers: Option<&[Binding]>,
+        drawing: &Drawing,
     ) -> Result<(), Error> {
         let view = MapView::new(clip_from_world);
         recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
-        self.culling.record(recorder, "cluster culling", casters, &self.view)?;
-        let target = RenderTarget { colors: Vec::new(), depth: Some(wgpu::CompareFunction::Greater), layers: 1 };
+        self.culling.record(recorder, "cluster culling", casters, drawing.surfaces, &self.view)?;
+        let target = RenderTarget { depth: Some(wgpu::CompareFunction::Greater), ..RenderTarget::default() };
         let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>().with::<LayerShape>();
-        let key = key.feature("layers", layers.is_some());
+        let key = key.feature("layers", drawing.layers.is_some()).feature("farthest", drawing.farthest.is_some());
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
         let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
         let set = bindings! { map_view: &self.view, visible: &self.culling.visible };
-        let set = [set, layers.unwrap_or_default()].concat();
-        recorder.render_pass(label, &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
+        let mut set = [set, drawing.layers.unwrap_or_default()].concat();
+        if let Some(Farthest { before, depths }) = drawing.farthest {
+            recorder.encoder.clear_buffer(depths, 0, None);
+            set.extend_from_slice(bindings! { background: &before.texture, farthest_depths: depths });
+        }
+        recorder.render_pass(drawing.label, &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
             for (i, batch) in casters.batches.iter().enumerate() {
                 let pipeline = if batch.masked { &masked } else { &opaque };
                 pass.set_pipeline(&pipeline.pipeline);

@@ -50,7 +50,7 @@ impl GeometryBuffer {
         let target = RenderTarget {
             colors: vec![self.normal.texture.format(), self.color.texture.format()],
             depth: Some(wgpu::CompareFunction::Greater),
-            layers: 1,
+            ..RenderTarget::default()
         };
         let key = ShaderKey::new("passes::geometry_buffer").with::<ViewUniform>().with::<BatchLayout>();
         let plain = recorder.gpu.render_pipeline(&key, &target)?;

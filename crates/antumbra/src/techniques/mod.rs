@@ -8,6 +8,7 @@ pub mod hard;
 pub mod packet;
 pub mod pcf;
 pub mod pcss;
+pub mod ssm;
 pub mod uniform_sampling;
 
 /// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
@@ -15,6 +16,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<hard::Hard>(),
     entry::<pcf::Pcf>(),
     entry::<pcss::Pcss>(),
+    entry::<ssm::Ssm>(),
     entry::<backprojection::Backprojection>(),
     entry::<packet::Packet>(),
     entry::<uniform_sampling::UniformSampling>(),

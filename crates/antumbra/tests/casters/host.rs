@@ -2,7 +2,7 @@
 
 use crate::common::gpu;
 use antumbra::Aabb;
-use antumbra::casters::{BorrowedMesh, Indices, Transforms};
+use antumbra::casters::{BorrowedMesh, Indices, Role, Transforms};
 use antumbra_scene::Scene;
 use glam::Mat4;
 use wgpu::util::DeviceExt;
@@ -41,7 +41,7 @@ pub struct Host {
     layout: Layout,
     triangles: u32,
     instances: u32,
-    receiver_only: bool,
+    role: Role,
 }
 
 impl Host {
@@ -66,7 +66,7 @@ impl Host {
             bounds: scene.bounds_of(|i| i.mesh == mesh),
             triangles: source.triangle_count() as u32,
             instances: placed.len() as u32,
-            receiver_only: placed.iter().all(|i| i.receiver_only),
+            role: if placed.iter().all(|i| i.receiver_only) { Role::Receiver } else { Role::Caster },
             layout,
         }
     }
@@ -90,7 +90,7 @@ impl Host {
                 count: self.instances,
             },
             bounds: self.bounds,
-            receiver_only: self.receiver_only,
+            role: self.role,
             mask: None,
         }
     }

@@ -1,6 +1,6 @@
-//! The files of a suite: a page, JSON, CSV, and a table in Markdown.
+//! The files of a suite: a page, JSON, CSV of the runs and of the plots' points, and a table in Markdown.
 
-use super::{Context, Findings, Ratio, Run, Trial, markdown, page};
+use super::{Context, Findings, Ratio, Run, Shown, Trial, markdown, page};
 use crate::report::{self, ReportError};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -12,6 +12,7 @@ pub fn write(context: &Context, findings: &Findings, to: &Path) -> Result<(), Re
     let files = [
         (named("json"), json(context, findings)?),
         (named("csv"), csv(context, findings)?),
+        (named("curves.csv"), curves(findings)?),
         (named("md"), markdown::document(context, findings).into_bytes()),
         (named("html"), page::html(context, findings)?.into_bytes()), // last: it links to the others
     ];
@@ -67,6 +68,20 @@ fn csv(context: &Context, findings: &Findings) -> Result<Vec<u8>, ReportError> {
     for (trial, run) in runs() {
         let done = work.iter().map(|key| run.work.get(key).map_or(String::new(), f64::to_string));
         writer.write_record(cells(context, trial, run).into_iter().chain(done))?;
+    }
+    Ok(writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?)
+}
+
+/// A row a point of a plot's curve.
+fn curves(findings: &Findings) -> Result<Vec<u8>, ReportError> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(["part", "x_axis", "y_axis", "curve", "x", "y", "note"])?;
+    for (part, shown) in findings.parts.iter().flat_map(|part| part.shown.iter().map(move |shown| (part, shown))) {
+        let Shown::Lines(lines) = shown else { continue };
+        for (curve, spot) in lines.curves.iter().flat_map(|curve| curve.points.iter().map(move |spot| (curve, spot))) {
+            let (x, y) = (spot.x.to_string(), spot.y.to_string());
+            writer.write_record([&part.title, &lines.x, &lines.y, &curve.label, &x, &y, &spot.note])?;
+        }
     }
     Ok(writer.into_inner().map_err(|e| csv::Error::from(e.into_error()))?)
 }

@@ -25,10 +25,12 @@ pub fn html(context: &Context, findings: &Findings) -> Result<String, ReportErro
             }
         }
     };
-    let [json, csv, md] = ["json", "csv", "md"].map(|ending| format!("{}.{ending}", context.suite));
+    let [json, csv, curves, md] =
+        ["json", "csv", "curves.csv", "md"].map(|ending| format!("{}.{ending}", context.suite));
     let footer = html! {
         p {
-            "Every measurement as " a href=(json) { "JSON" } " and " a href=(csv) { "CSV" } "; the tables as "
+            "Every measurement as " a href=(json) { "JSON" } " and " a href=(csv) { "CSV" } "; the plots' points as "
+            a href=(curves) { "CSV" } "; the tables as "
             a href=(md) { "Markdown" } "."
         }
     };

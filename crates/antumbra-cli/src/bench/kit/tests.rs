@@ -104,7 +104,7 @@ fn all_files_are_there_and_nothing_else() {
     let entries = fs::read_dir(folder.path().join("deep/results")).unwrap();
     let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
-    assert_eq!(names, ["made-up.csv", "made-up.html", "made-up.json", "made-up.md"]);
+    assert_eq!(names, ["made-up.csv", "made-up.curves.csv", "made-up.html", "made-up.json", "made-up.md"]);
 }
 
 #[test]
@@ -135,6 +135,13 @@ fn csv_has_a_row_a_run_and_a_column_a_figure_of_work() {
     let maps = csv.headers().unwrap().iter().position(|h| h == "maps").unwrap();
     let rows: Vec<_> = csv.records().map(Result::unwrap).collect();
     assert_eq!(rows.iter().map(|r| &r[maps]).collect::<Vec<_>>(), ["7", ""]);
+}
+
+#[test]
+fn every_point_of_a_plot_has_a_row() {
+    let text = text(&written(&findings()), "made-up.curves.csv");
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines, ["part,x_axis,y_axis,curve,x,y,note", "A part,ms,error,a curve,1,0.1,a point"]);
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod horizon;
 mod layers;
 mod mask;
 mod patches;
+mod penumbra;
 
 use crate::recorder::Work;
 use crate::resource::{buffer_of, read_buffer, storage_buffer};

@@ -1,0 +1,61 @@
+//! What the light's centre sees: the receivers, and the nearest and the farthest surfaces of the occluders.
+
+use crate::passes::culling::Surfaces;
+use crate::passes::depth_map::{DepthMap, Drawing, Farthest};
+use crate::recorder::Recorder;
+use crate::resource::storage_buffer;
+use crate::technique::Memory;
+use crate::{Casters, Error, Frame, Gpu};
+
+/// The receiver map and one or two occluder maps [Atty 2006, sections 3.2 and 3.5].
+///
+/// The paper's second pass keeps the farthest back faces. Here it is the farthest surface that lies before the
+/// receivers, whatever way its triangles are wound: on a closed mesh that is the same.
+pub(super) struct Maps {
+    pub receivers: DepthMap,
+    pub nearest: DepthMap,
+    /// The depths of the farthest surfaces, as in [`Farthest`]; 16 bytes where they are not asked for.
+    pub farthest: wgpu::Buffer,
+    passes: u32,
+}
+
+impl Maps {
+    /// Makes maps in `slot` unless such for these casters are there.
+    pub fn ensure<'a>(
+        slot: &'a mut Option<Maps>,
+        gpu: &Gpu,
+        size: u32,
+        passes: u32,
+        casters: &Casters,
+    ) -> Result<&'a Maps, Error> {
+        if !slot.as_ref().is_some_and(|maps| maps.receivers.fits(size, casters)) {
+            let map = || DepthMap::new(gpu, size, casters);
+            let texels = if passes > 1 { u64::from(size) * u64::from(size) } else { 0 };
+            let farthest = storage_buffer(gpu, "farthest occluders", 4 * texels);
+            *slot = Some(Maps { receivers: map()?, nearest: map()?, farthest, passes });
+        }
+        Ok(slot.as_ref().expect("just made"))
+    }
+
+    /// Draws all of them, the triangles of the occluders once.
+    pub fn record(&self, recorder: &mut Recorder, frame: &Frame) -> Result<(), Error> {
+        let clip_from_world = frame.map_clip_from_world();
+        let mut draw = |map: &DepthMap, drawing: &Drawing| map.draw(recorder, &frame.casters, clip_from_world, drawing);
+        draw(&self.receivers, &Drawing::of("receiver map", Surfaces::Receivers))?;
+        let farthest = Farthest { before: &self.receivers, depths: &self.farthest };
+        let occluders = Drawing::of("occluder maps", Surfaces::Occluders);
+        draw(&self.nearest, &Drawing { farthest: (self.passes > 1).then_some(farthest), ..occluders })
+    }
+
+    /// GPU memory by pass.
+    pub fn memory(&self) -> Vec<Memory> {
+        let labelled = |map: &DepthMap, label| map.memory().map(|m| relabelled(m, label));
+        let farthest = Memory::new("occluder maps", self.farthest.size());
+        let maps = [labelled(&self.receivers, "receiver map"), labelled(&self.nearest, "occluder maps")];
+        maps.into_iter().flatten().chain([farthest]).collect()
+    }
+}
+
+fn relabelled(memory: Memory, label: &'static str) -> Memory {
+    if memory.pass == "depth map" { Memory::new(label, memory.bytes) } else { memory }
+}
