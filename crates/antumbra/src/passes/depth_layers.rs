@@ -2,7 +2,8 @@
 //!
 //! Each fragment puts its depth in its place among the texel's nearest by a chain of atomic maxima: the multi-depth test
 //! of [Liu et al. 2010]. Peeling, a pass over the casters for each layer, gives the same bits. On llvmpipe, 2 cores, the
-//! one pass takes this part of peeling's time, clearing and copying included (medians of 5 frames):
+//! one pass takes this part of peeling's time for as many surfaces as layers, clearing and copying included (medians of 5
+//! frames):
 //!
 //! | scene (triangles) | 1024 texels, 2 layers | 4 layers | 2048 texels, 2 layers | 4 layers |
 //! |---|---|---|---|---|
@@ -13,9 +14,8 @@
 //! | bumpy (476 thousand) | 0.51 | 0.28 | 0.61 | 0.31 |
 //!
 //! Peeling wins where few triangles cover many texels and two layers are asked for; the one pass gains with the number of
-//! layers and of triangles, and over all takes two thirds of the time. GPUs have not been measured. Reading the buffer
-//! instead of a texture made from it would save a twentieth. The price is memory: 2k + 1 maps for k layers where peeling
-//! has k, and two more where surfaces are left out.
+//! layers and of triangles, and over all takes two thirds of the time. GPUs have not been measured. The price is memory:
+//! for k layers that are surfaces 3k + 1 maps where peeling has k, and four more where surfaces are merged.
 
 use crate::casters::Casters;
 use crate::passes::culling::Surfaces;
