@@ -75,6 +75,8 @@ pub struct RenderTarget {
     pub depth: Option<wgpu::CompareFunction>,
     /// Layers that are drawn at once; 1 is an ordinary pass.
     pub layers: u32,
+    /// Depths a texel: 1, or 4 by multisampling.
+    pub samples: u32,
 }
 
 impl RenderTarget {
@@ -189,7 +191,7 @@ impl PipelineCache {
                 stencil: Default::default(),
                 bias: Default::default(),
             }),
-            multisample: Default::default(),
+            multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
             fragment: has_fragment.then_some(wgpu::FragmentState {
                 module: &module,
                 entry_point: Some("fragment"),

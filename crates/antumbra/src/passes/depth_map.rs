@@ -18,6 +18,7 @@ pub struct DepthMap {
     /// `Depth32Float`, `size` x `size`.
     pub texture: Texture,
     size: u32,
+    samples: u32,
     view: wgpu::Buffer,
     culling: Culling,
 }
@@ -25,13 +26,18 @@ pub struct DepthMap {
 impl DepthMap {
     /// An empty map of `size` texels a side.
     pub fn new(gpu: &Gpu, size: u32, casters: &Casters) -> Result<DepthMap, Error> {
+        DepthMap::multisampled(gpu, size, 1, casters)
+    }
+
+    /// An empty map of `size` texels a side with 1 or 4 depths in each.
+    pub fn multisampled(gpu: &Gpu, size: u32, samples: u32, casters: &Casters) -> Result<DepthMap, Error> {
         gpu.check_size("shadow map", size, size)?;
-        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC;
+        let read = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let usage = if samples == 1 { read | wgpu::TextureUsages::COPY_SRC } else { read };
         Ok(DepthMap {
-            texture: Texture::new(gpu, "depth map", [size; 2], 1, wgpu::TextureFormat::Depth32Float, usage),
+            texture: Texture::depth(gpu, "depth map", [size; 2], samples, usage),
             size,
+            samples,
             view: uniform(gpu, "map view", &MapView::new(Mat4::IDENTITY)),
             culling: Culling::new(gpu, casters),
         })
@@ -50,9 +56,9 @@ impl DepthMap {
         Ok(slot.as_ref().expect("just made"))
     }
 
-    /// True if it is of this size for these casters.
+    /// True if it is of this size for these casters, with one depth a texel.
     pub fn fits(&self, size: u32, casters: &Casters) -> bool {
-        self.size == size && self.culling.fits(casters)
+        self.size == size && self.samples == 1 && self.culling.fits(casters)
     }
 
     /// Makes a map of `size` texels a side in `slot` if need be and draws what the light's centre sees.
@@ -63,6 +69,24 @@ impl DepthMap {
         size: u32,
     ) -> Result<&'a DepthMap, Error> {
         let map = DepthMap::ensure(slot, recorder.gpu, size, &frame.casters)?;
+        map.record(recorder, &frame.casters, frame.map_clip_from_world())?;
+        Ok(map)
+    }
+
+    /// The same with 1 or 4 depths a texel, for techniques that average what they make of depths.
+    pub fn of_light_multisampled<'a>(
+        slot: &'a mut Option<DepthMap>,
+        recorder: &mut Recorder,
+        frame: &Frame,
+        size: u32,
+        samples: u32,
+    ) -> Result<&'a DepthMap, Error> {
+        let fits = |m: &DepthMap| m.size == size && m.samples == samples && m.culling.fits(&frame.casters);
+        if !slot.as_ref().is_some_and(fits) {
+            *slot = None; // Frees the old map before the new one is made.
+            *slot = Some(DepthMap::multisampled(recorder.gpu, size, samples, &frame.casters)?);
+        }
+        let map = slot.as_ref().expect("just made");
         map.record(recorder, &frame.casters, frame.map_clip_from_world())?;
         Ok(map)
     }
@@ -84,7 +108,8 @@ impl DepthMap {
         let view = MapView::new(clip_from_world);
         recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
         self.culling.record(recorder, "cluster culling", casters, &self.view)?;
-        let target = RenderTarget { colors: Vec::new(), depth: Some(wgpu::CompareFunction::Greater), layers: 1 };
+        let depth = Some(wgpu::CompareFunction::Greater);
+        let target = RenderTarget { colors: Vec::new(), depth, layers: 1, samples: self.samples };
         let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>().with::<LayerShape>();
         let key = key.feature("layers", layers.is_some());
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;

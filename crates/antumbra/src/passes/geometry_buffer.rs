@@ -51,6 +51,7 @@ impl GeometryBuffer {
             colors: vec![self.normal.texture.format(), self.color.texture.format()],
             depth: Some(wgpu::CompareFunction::Greater),
             layers: 1,
+            samples: 1,
         };
         let key = ShaderKey::new("passes::geometry_buffer").with::<ViewUniform>().with::<BatchLayout>();
         let plain = recorder.gpu.render_pipeline(&key, &target)?;

@@ -8,6 +8,7 @@ pub mod depth_map;
 pub mod depth_pyramid;
 pub mod geometry_buffer;
 pub mod light_maps;
+pub mod moments;
 pub mod patch_pyramid;
 pub mod picture;
 pub mod sparse;

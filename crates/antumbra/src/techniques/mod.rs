@@ -4,17 +4,28 @@ use crate::technique::{TechniqueInfo, entry};
 
 pub mod adaptive_sampling;
 pub mod backprojection;
+pub mod csm;
+pub mod esm;
+pub mod evsm;
 pub mod hard;
+pub mod msm;
 pub mod packet;
 pub mod pcf;
 pub mod pcss;
+pub mod prefiltered;
 pub mod uniform_sampling;
+pub mod vsm;
 
 /// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
 pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<hard::Hard>(),
     entry::<pcf::Pcf>(),
     entry::<pcss::Pcss>(),
+    entry::<vsm::Vsm>(),
+    entry::<evsm::Evsm>(),
+    entry::<msm::Msm>(),
+    entry::<esm::Esm>(),
+    entry::<csm::Csm>(),
     entry::<backprojection::Backprojection>(),
     entry::<packet::Packet>(),
     entry::<uniform_sampling::UniformSampling>(),

@@ -174,6 +174,7 @@ impl LightMaps {
             colors: Vec::new(),
             depth: Some(wgpu::CompareFunction::Greater),
             layers: self.layers_per_group,
+            samples: 1,
         };
         let key = Self::key("passes::light_maps::draw").feature("layered", self.layers_per_group > 1);
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
