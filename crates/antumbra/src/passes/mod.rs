@@ -12,3 +12,4 @@ pub mod moments;
 pub mod patch_pyramid;
 pub mod picture;
 pub mod sparse;
+pub mod summed_area;

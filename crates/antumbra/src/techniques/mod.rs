@@ -5,6 +5,7 @@ use crate::technique::{TechniqueInfo, entry};
 pub mod adaptive_sampling;
 pub mod backprojection;
 pub mod csm;
+pub mod cssm;
 pub mod esm;
 pub mod evsm;
 pub mod hard;
@@ -13,8 +14,11 @@ pub mod packet;
 pub mod pcf;
 pub mod pcss;
 pub mod prefiltered;
+pub mod savsm;
+pub mod summed;
 pub mod uniform_sampling;
 pub mod vsm;
+pub mod vssm;
 
 /// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
 pub const TECHNIQUES: &[TechniqueInfo] = &[
@@ -26,6 +30,9 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<msm::Msm>(),
     entry::<esm::Esm>(),
     entry::<csm::Csm>(),
+    entry::<savsm::Savsm>(),
+    entry::<vssm::Vssm>(),
+    entry::<cssm::Cssm>(),
     entry::<backprojection::Backprojection>(),
     entry::<packet::Packet>(),
     entry::<uniform_sampling::UniformSampling>(),

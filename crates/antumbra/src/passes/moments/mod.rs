@@ -5,7 +5,7 @@ mod format;
 pub(crate) mod warp;
 
 pub use format::TexelFormat;
-pub use warp::DepthWarp;
+pub use warp::{DepthWarp, Nearest};
 
 use crate::casters::Casters;
 use crate::passes::depth_map::DepthMap;

@@ -1,6 +1,6 @@
 //! What the numbers of a moment map mean.
 
-use crate::{Frame, gpu_struct};
+use crate::{Frame, ShadowFrustum, gpu_struct};
 use glam::Vec2;
 
 gpu_struct! {
@@ -26,19 +26,28 @@ gpu_struct! {
     }
 }
 
-/// Casters nearer than this part of the farthest distance count as there.
-const NEAREST: f32 = 0.02;
+/// Where the range of depths begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nearest {
+    /// At the nearest receiver: what is nearer hides every receiver behind it however near it is, and a short range lets
+    /// less light bleed.
+    Receiver,
+    /// At the nearest caster: the penumbra's width follows from the caster's distance.
+    Caster,
+}
 
 impl DepthWarp {
-    /// This warp over the range of a frame: from the nearest corner of what casts to the farthest receiver. What lies
-    /// behind every receiver hides nothing, so it counts as at the range's end.
-    pub fn over(self, frame: &Frame) -> DepthWarp {
-        let corners = frame.casters.bounds().corners();
-        let depths = corners.iter().map(|c| frame.light.light_from_world(*c).z);
-        let farthest = frame.frustum.receivers[1];
-        let nearest = depths.fold(farthest, f32::min).max(NEAREST * farthest).min(0.99 * farthest);
-        // Nothing is at 1, so that a receiver at the end of the range is told from empty space by rounding only.
-        let length = 1.001 * (farthest - nearest);
+    /// This warp over the range of a frame. What lies behind every receiver hides nothing, so it counts as at the range's
+    /// end.
+    pub fn over(self, frame: &Frame, nearest: Nearest) -> DepthWarp {
+        let ShadowFrustum { receivers: [first, farthest], nearest_caster, .. } = frame.frustum;
+        let nearest = match nearest {
+            Nearest::Receiver => first,
+            Nearest::Caster => nearest_caster,
+        };
+        // A receiver at either end is told from what is clamped there by rounding only, so the range goes on a little.
+        let margin = 1e-3 * (farthest - nearest).max(1e-3 * farthest);
+        let (nearest, length) = (nearest - margin, farthest - nearest + 2.0 * margin);
         DepthWarp { nearest, per_metre: 1.0 / length, map_near: frame.frustum.near, ..self }
     }
 }

@@ -3,7 +3,7 @@
 //! is stored and how the filtered values are read, in a module `warp.wesl` of two functions.
 
 use crate::frame::FrameUniform;
-use crate::passes::moments::{DepthWarp, MomentMap, MomentShape, TexelFormat};
+use crate::passes::moments::{DepthWarp, MomentMap, MomentShape, Nearest, TexelFormat};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
@@ -12,7 +12,7 @@ use crate::shader::ShaderKey;
 use crate::technique::{About, Describe, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use glam::Vec2;
-use std::sync::Arc;
+use std::{marker::PhantomData, sync::Arc};
 
 /// What distinguishes one prefiltered technique from another.
 pub trait Prefilter: 'static {
@@ -129,13 +129,13 @@ gpu_struct! {
 
 /// A technique that looks a prefiltered map up once a pixel.
 pub struct Prefiltered<P: Prefilter> {
-    settings: P::Settings,
     stored: Stored,
     shape: MomentShape,
     lookup: Arc<ComputePipeline>,
     filtering: wgpu::Buffer,
     trilinear: wgpu::Sampler,
     map: Option<MomentMap>,
+    technique: PhantomData<P>,
 }
 
 impl<P: Prefilter> Describe for Prefiltered<P> {
@@ -172,10 +172,10 @@ impl<P: Prefilter> Describe for Prefiltered<P> {
             lookup: gpu.compute_pipeline(&key, "lookup")?,
             filtering: uniform(gpu, "moment filter", &value),
             trilinear: sampler(gpu, filtering.anisotropy as u16, last_level),
-            settings,
             stored,
             shape,
             map: None,
+            technique: PhantomData,
         })
     }
 }
@@ -195,7 +195,7 @@ fn sampler(gpu: &Gpu, anisotropy: u16, last_level: f32) -> wgpu::Sampler {
 impl<P: Prefilter> Technique for Prefiltered<P> {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         let map = MomentMap::ensure(&mut self.map, recorder.gpu, self.shape, &frame.casters)?;
-        map.record(recorder, frame, P::WARP, self.stored.warp.over(frame))?;
+        map.record(recorder, frame, P::WARP, self.stored.warp.over(frame, Nearest::Receiver))?;
         let set = frame.bindings(bindings! {
             warp: &map.warp,
             moments: &map.texture,
