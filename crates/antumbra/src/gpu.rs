@@ -26,6 +26,8 @@ pub struct Capabilities {
     pub timestamps: bool,
     /// Linear filtering of 32-bit float textures. Without it techniques interpolate in the shader.
     pub float32_filtering: bool,
+    /// Samplers with anisotropy whose footprint is right. Without it techniques filter in the shader.
+    pub anisotropic_filtering: bool,
     /// Blending into 32-bit float targets. Without it techniques accumulate in compute.
     pub float32_blending: bool,
     /// Rasterisation of every touched pixel. Without it triangles are enlarged in the vertex shader.
@@ -48,6 +50,8 @@ impl Capabilities {
         Capabilities {
             timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
             float32_filtering: features.contains(wgpu::Features::FLOAT32_FILTERABLE),
+            // llvmpipe (seen in Mesa 22.3) filters over far more than the footprint, and slowly.
+            anisotropic_filtering: !info.driver.contains("llvmpipe"),
             float32_blending: features.contains(wgpu::Features::FLOAT32_BLENDABLE),
             conservative_rasterization: features.contains(wgpu::Features::CONSERVATIVE_RASTERIZATION),
             subgroups: features.contains(wgpu::Features::SUBGROUP),

@@ -73,7 +73,20 @@ impl Culling {
         casters: &Casters,
         view: &wgpu::Buffer,
     ) -> Result<(), Error> {
+        self.find(recorder, label, casters, view, false)
+    }
+
+    /// The same, or, for `receivers`, the clusters that only take shadows.
+    pub(crate) fn find(
+        &self,
+        recorder: &mut Recorder,
+        label: &str,
+        casters: &Casters,
+        view: &wgpu::Buffer,
+        receivers: bool,
+    ) -> Result<(), Error> {
         let key = ShaderKey::new("passes::culling").with::<MapView>().with::<BatchLayout>();
+        let key = key.feature("receivers", receivers);
         let pipeline = recorder.gpu.compute_pipeline(&key, "cull")?;
         recorder.encoder.copy_buffer_to_buffer(&self.empty_draws, 0, &self.draws, 0, self.draws.size());
         recorder.compute_pass(label, |gpu, pass| {

@@ -19,6 +19,8 @@ pub struct DepthMap {
     pub texture: Texture,
     size: u32,
     samples: u32,
+    /// Holds the farthest of the surfaces that only take shadows instead of the nearest caster.
+    background: bool,
     view: wgpu::Buffer,
     culling: Culling,
 }
@@ -27,6 +29,11 @@ impl DepthMap {
     /// An empty map of `size` texels a side.
     pub fn new(gpu: &Gpu, size: u32, casters: &Casters) -> Result<DepthMap, Error> {
         DepthMap::multisampled(gpu, size, 1, casters)
+    }
+
+    /// An empty map for the farthest of the surfaces that only take shadows; 1 where there is none.
+    pub fn background(gpu: &Gpu, size: u32, samples: u32, casters: &Casters) -> Result<DepthMap, Error> {
+        Ok(DepthMap { background: true, ..DepthMap::multisampled(gpu, size, samples, casters)? })
     }
 
     /// An empty map of `size` texels a side with 1 or 4 depths in each.
@@ -38,6 +45,7 @@ impl DepthMap {
             texture: Texture::depth(gpu, "depth map", [size; 2], samples, usage),
             size,
             samples,
+            background: false,
             view: uniform(gpu, "map view", &MapView::new(Mat4::IDENTITY)),
             culling: Culling::new(gpu, casters),
         })
@@ -73,27 +81,9 @@ impl DepthMap {
         Ok(map)
     }
 
-    /// The same with 1 or 4 depths a texel, for techniques that average what they make of depths.
-    pub fn of_light_multisampled<'a>(
-        slot: &'a mut Option<DepthMap>,
-        recorder: &mut Recorder,
-        frame: &Frame,
-        size: u32,
-        samples: u32,
-    ) -> Result<&'a DepthMap, Error> {
-        let fits = |m: &DepthMap| m.size == size && m.samples == samples && m.culling.fits(&frame.casters);
-        if !slot.as_ref().is_some_and(fits) {
-            *slot = None; // Frees the old map before the new one is made.
-            *slot = Some(DepthMap::multisampled(recorder.gpu, size, samples, &frame.casters)?);
-        }
-        let map = slot.as_ref().expect("just made");
-        map.record(recorder, &frame.casters, frame.map_clip_from_world())?;
-        Ok(map)
-    }
-
     /// Draws the casters that `clip_from_world` holds.
     pub fn record(&self, recorder: &mut Recorder, casters: &Casters, clip_from_world: Mat4) -> Result<(), Error> {
-        self.draw(recorder, "depth map", casters, clip_from_world, None)
+        self.draw(recorder, self.label(), casters, clip_from_world, None)
     }
 
     /// The same, with every surface of a texel handed to the buffers of `layers`.
@@ -107,8 +97,11 @@ impl DepthMap {
     ) -> Result<(), Error> {
         let view = MapView::new(clip_from_world);
         recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
-        self.culling.record(recorder, "cluster culling", casters, &self.view)?;
-        let depth = Some(wgpu::CompareFunction::Greater);
+        self.culling.find(recorder, "cluster culling", casters, &self.view, self.background)?;
+        // Reversed depth: the nearest is the greatest.
+        let (compare, nothing) =
+            if self.background { (wgpu::CompareFunction::Less, 1.0) } else { (wgpu::CompareFunction::Greater, 0.0) };
+        let depth = Some(compare);
         let target = RenderTarget { colors: Vec::new(), depth, layers: 1, samples: self.samples };
         let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>().with::<LayerShape>();
         let key = key.feature("layers", layers.is_some());
@@ -116,7 +109,11 @@ impl DepthMap {
         let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
         let set = bindings! { map_view: &self.view, visible: &self.culling.visible };
         let set = [set, layers.unwrap_or_default()].concat();
-        recorder.render_pass(label, &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
+        let cleared = wgpu::RenderPassDepthStencilAttachment {
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(nothing), store: wgpu::StoreOp::Store }),
+            ..depth_target(&self.texture.view)
+        };
+        recorder.render_pass(label, &[], Some(cleared), |gpu, pass| {
             for (i, batch) in casters.batches.iter().enumerate() {
                 let pipeline = if batch.masked { &masked } else { &opaque };
                 pass.set_pipeline(&pipeline.pipeline);
@@ -128,6 +125,10 @@ impl DepthMap {
         Ok(())
     }
 
+    fn label(&self) -> &'static str {
+        if self.background { "background map" } else { "depth map" }
+    }
+
     /// What was culled.
     pub fn culling(&self) -> &Culling {
         &self.culling
@@ -135,6 +136,6 @@ impl DepthMap {
 
     /// GPU memory by pass.
     pub fn memory(&self) -> [Memory; 2] {
-        [Memory::new("cluster culling", self.culling.bytes()), Memory::new("depth map", self.texture.bytes())]
+        [Memory::new("cluster culling", self.culling.bytes()), Memory::new(self.label(), self.texture.bytes())]
     }
 }

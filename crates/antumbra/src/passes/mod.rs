@@ -7,6 +7,7 @@ pub mod depth_layers;
 pub mod depth_map;
 pub mod depth_pyramid;
 pub mod geometry_buffer;
+pub mod light_depth;
 pub mod light_maps;
 pub mod moments;
 pub mod patch_pyramid;

@@ -8,7 +8,7 @@ pub use format::TexelFormat;
 pub use warp::{DepthWarp, Nearest};
 
 use crate::casters::Casters;
-use crate::passes::depth_map::DepthMap;
+use crate::passes::light_depth::LightDepth;
 use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::{Texture, UniformArray, uniform};
 use crate::shader::{HostStruct, ShaderKey};
@@ -52,7 +52,7 @@ pub struct MomentMap {
     /// The uniform of `shaders/depth_warp.wesl`.
     pub warp: wgpu::Buffer,
     shape: MomentShape,
-    depth: DepthMap,
+    depth: LightDepth,
     /// Half-way through the blur.
     between: Option<Texture>,
     blur: UniformArray<BlurUniform>,
@@ -63,7 +63,7 @@ impl MomentMap {
     /// An empty map.
     pub fn new(gpu: &Gpu, shape: MomentShape, casters: &Casters) -> Result<MomentMap, Error> {
         let MomentShape { size, layers, format, samples, blur, mips } = shape;
-        let depth = DepthMap::multisampled(gpu, size, samples, casters)?;
+        let depth = LightDepth::new(gpu, size, samples, casters)?;
         let count = if mips { 32 - size.leading_zeros() } else { 1 };
         let usage =
             wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
@@ -90,7 +90,7 @@ impl MomentMap {
         shape: MomentShape,
         casters: &Casters,
     ) -> Result<&'a MomentMap, Error> {
-        if !slot.as_ref().is_some_and(|m| m.shape == shape && m.depth.culling().fits(casters)) {
+        if !slot.as_ref().is_some_and(|m| m.shape == shape && m.depth.fits(casters)) {
             *slot = None; // Frees the old map before the new one is made.
             *slot = Some(MomentMap::new(gpu, shape, casters)?);
         }
@@ -105,7 +105,7 @@ impl MomentMap {
         part: &'static str,
         warp: DepthWarp,
     ) -> Result<(), Error> {
-        self.depth.record(recorder, &frame.casters, frame.map_clip_from_world())?;
+        self.depth.record(recorder, frame)?;
         recorder.gpu.queue.write_buffer(&self.warp, 0, &warp.uniform_bytes());
         self.store(recorder, part)?;
         self.blur(recorder)?;
@@ -117,10 +117,16 @@ impl MomentMap {
             .key("passes::moments::store")
             .part("warp", part)
             .feature("multisampled", self.shape.samples > 1)
+            .feature("background", self.depth.background.is_some())
             .with::<crate::frame::FrameUniform>()
             .with::<DepthWarp>();
         let store = recorder.gpu.compute_pipeline(&key, "store")?;
-        let set = bindings! { warp: &self.warp, source_map: &self.depth.texture, texels: &self.levels[0] };
+        let set = bindings! {
+            warp: &self.warp,
+            source_map: &self.depth.casters.texture,
+            background_map: &self.depth.behind().texture,
+            texels: &self.levels[0],
+        };
         recorder.compute("moments", &store, set, Work::Threads(self.threads(0)));
         Ok(())
     }

@@ -11,6 +11,10 @@ gpu_struct! {
         nearest: f32,
         /// One over the length of the range, 1/metres.
         per_metre: f32,
+        /// Inverse distance at the range's end, 1/metres.
+        farthest_q: f32,
+        /// One over the length of the range of inverse distances, metres.
+        per_q: f32,
         /// Distance of the depth map's near plane, metres.
         map_near: f32,
         /// The part of a stored number that rounding may take or give.
@@ -48,6 +52,14 @@ impl DepthWarp {
         // A receiver at either end is told from what is clamped there by rounding only, so the range goes on a little.
         let margin = 1e-3 * (farthest - nearest).max(1e-3 * farthest);
         let (nearest, length) = (nearest - margin, farthest - nearest + 2.0 * margin);
-        DepthWarp { nearest, per_metre: 1.0 / length, map_near: frame.frustum.near, ..self }
+        let (farthest_q, nearest_q) = (1.0 / (nearest + length), 1.0 / nearest);
+        DepthWarp {
+            nearest,
+            per_metre: 1.0 / length,
+            farthest_q,
+            per_q: 1.0 / (nearest_q - farthest_q),
+            map_near: frame.frustum.near,
+            ..self
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! Summed-area tables [Crow 1984] of what a technique stores of a depth map: the mean over any box by four corners.
 
-use crate::passes::depth_map::DepthMap;
+use crate::passes::light_depth::LightDepth;
 use crate::passes::moments::DepthWarp;
 use crate::recorder::{Recorder, Work};
 use crate::resource::{Texture, storage_buffer};
@@ -75,31 +75,36 @@ impl SummedArea {
         Ok(slot.as_ref().expect("just made"))
     }
 
-    /// Sums what the module at `part` stores of a depth map of one depth a texel; `warp` is the uniform of
+    /// Sums what the module at `part` stores of maps of one depth a texel; `warp` is the uniform of
     /// `shaders/depth_warp.wesl`.
     pub fn record(
         &self,
         recorder: &mut Recorder,
-        map: &DepthMap,
+        depth: &LightDepth,
         part: &'static str,
         warp: &wgpu::Buffer,
     ) -> Result<(), Error> {
         let key = |module| {
             let key = ShaderKey::new(module).part("warp", part).with::<crate::frame::FrameUniform>().with::<DepthWarp>();
-            key.feature("fixed", self.shape.sums == Sums::Fixed)
+            key.feature("fixed", self.shape.sums == Sums::Fixed).feature("background", depth.background.is_some())
+        };
+        let source = bindings! {
+            warp: warp,
+            source_map: &depth.casters.texture,
+            background_map: &depth.behind().texture,
         };
         let layers = self.shape.layers;
         if self.shape.sums == Sums::Offset {
             let average = recorder.gpu.compute_pipeline(&key("passes::summed_area::mean"), "average")?;
-            let set = bindings! { warp: warp, source_map: &map.texture, mean_of_layer: &self.means };
-            recorder.compute("summed-area table", &average, set, Work::Groups([layers, 1, 1]));
+            let set = [&source[..], bindings! { mean_of_layer: &self.means }].concat();
+            recorder.compute("summed-area table", &average, &set, Work::Groups([layers, 1, 1]));
         }
         let along_rows = recorder.gpu.compute_pipeline(&key("passes::summed_area::prefix"), "sum_lines")?;
         let down = key("passes::summed_area::prefix").feature("columns", true);
         let down_columns = recorder.gpu.compute_pipeline(&down, "sum_lines")?;
         let groups = || Work::Groups([self.shape.size.div_ceil(8), 1, layers]);
-        let rows = bindings! { warp: warp, source_map: &map.texture, means: &self.means, summed: &self.rows };
-        recorder.compute("summed-area table", &along_rows, rows, groups());
+        let rows = [&source[..], bindings! { means: &self.means, summed: &self.rows }].concat();
+        recorder.compute("summed-area table", &along_rows, &rows, groups());
         let columns = bindings! { row_sums: &self.rows, summed: &self.texture };
         recorder.compute("summed-area table", &down_columns, columns, groups());
         Ok(())

@@ -43,7 +43,7 @@ pub struct Stored {
 crate::choices! {
     /// Who interpolates.
     pub enum Lookup {
-        /// The sampler where the adapter filters the format, and the shader elsewhere.
+        /// The sampler where the adapter filters as it is asked to, and the shader elsewhere.
         Hardware = "hardware",
         /// The shader.
         Shader = "shader",
@@ -89,9 +89,9 @@ macro_rules! prefilter_settings {
                 blur: u32 = 3, $crate::settings::Kind::Integer { min: 1, max: 63 };
                 /// Mip chain, for pixels that cover many texels.
                 mips: bool = true, $crate::settings::Kind::Toggle;
-                /// Greatest anisotropy of the filter; 1 is none.
+                /// Greatest anisotropy of the filter; 1 is none, and so is any without a mip chain.
                 anisotropy: u32 = 16, $crate::settings::Kind::Integer { min: 1, max: 16 };
-                /// Filtered by the sampler (by the shader where the adapter does not filter the format), or by the shader.
+                /// Filtered by the sampler (by the shader where the adapter cannot as it is asked to), or by the shader.
                 lookup: $crate::techniques::prefiltered::Lookup = $crate::techniques::prefiltered::Lookup::Hardware,
                     $crate::settings::Kind::Choice { options: $crate::techniques::prefiltered::Lookup::OPTIONS };
                 $($own)*
@@ -145,7 +145,10 @@ impl<P: Prefilter> Describe for Prefiltered<P> {
     fn make(gpu: &Gpu, settings: P::Settings) -> Result<Self, Error> {
         let (filtering, stored) = (settings.filtering(), P::stored(&settings));
         stored.format.check(gpu, stored.portable)?;
-        let hardware = filtering.lookup == Lookup::Hardware && stored.format.is_filtered(gpu);
+        // Without a mip chain there is nothing that several lookups could be spared by.
+        let anisotropy = if filtering.mips { filtering.anisotropy } else { 1 };
+        let filtered = stored.format.is_filtered(gpu) && (anisotropy == 1 || gpu.capabilities.anisotropic_filtering);
+        let hardware = filtering.lookup == Lookup::Hardware && filtered;
         let key = ShaderKey::new("techniques::prefiltered::lookup")
             .part("warp", P::WARP)
             .feature("hardware", hardware)
@@ -164,14 +167,14 @@ impl<P: Prefilter> Describe for Prefiltered<P> {
         let last_level = if filtering.mips { filtering.map.ilog2() as f32 } else { 0.0 };
         let value = FilterUniform {
             size: Vec2::splat(filtering.map as f32),
-            anisotropy: filtering.anisotropy as f32,
+            anisotropy: anisotropy as f32,
             last_level,
             layers: stored.layers,
         };
         Ok(Prefiltered {
             lookup: gpu.compute_pipeline(&key, "lookup")?,
             filtering: uniform(gpu, "moment filter", &value),
-            trilinear: sampler(gpu, filtering.anisotropy as u16, last_level),
+            trilinear: sampler(gpu, anisotropy as u16, last_level),
             stored,
             shape,
             map: None,

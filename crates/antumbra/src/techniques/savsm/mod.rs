@@ -9,8 +9,8 @@ use crate::{settings::Kind, technique::About};
 crate::settings! {
     /// Settings of [`Savsm`].
     pub struct SavsmSettings {
-        /// Shadow map, texels a side.
-        map: u32 = 2048, Kind::Integer { min: 16, max: 16384 };
+        /// Shadow map, texels a side; its tables take 64 bytes a texel.
+        map: u32 = 1024, Kind::Integer { min: 16, max: 16384 };
         /// Sums of 32 bits, of 32 bits less their mean, or of 64 bits.
         format: Sums = Sums::Fixed, Kind::Choice { options: Sums::OPTIONS };
         /// Widest blocker search, in nodes of the depth pyramid a side.
@@ -32,12 +32,12 @@ impl Soft for SummedVariance {
         source: "Lauritzen 2007",
         summary: "blockers searched as by pcss; then a box of any width by four corners of a table",
     };
-    const WARP: &'static str = "techniques::vsm::warp";
+    const WARP: &'static str = "techniques::savsm::warp";
     const SOFT: &'static str = "techniques::savsm::soft";
 
     fn plan(settings: &SavsmSettings) -> Plan {
         Plan {
-            table: TableShape { size: settings.map, layers: 1, sums: settings.format },
+            table: TableShape { size: settings.map, layers: 2, sums: settings.format },
             warp: DepthWarp { rounding: TexelFormat::Rg32Float.rounding(), ..Default::default() },
             soft: SoftUniform { search: settings.search as f32, divisions: 1 },
         }

@@ -4,8 +4,8 @@
 
 use crate::frame::FrameUniform;
 use crate::passes::classify::PenumbraList;
-use crate::passes::depth_map::DepthMap;
 use crate::passes::depth_pyramid::DepthPyramid;
+use crate::passes::light_depth::LightDepth;
 use crate::passes::moments::{DepthWarp, Nearest};
 use crate::passes::summed_area::{Sums, SummedArea, TableShape};
 use crate::pipeline::ComputePipeline;
@@ -60,7 +60,7 @@ pub struct Summed<S: Soft> {
     soften: Arc<ComputePipeline>,
     warp: wgpu::Buffer,
     soft: wgpu::Buffer,
-    map: Option<DepthMap>,
+    depth: Option<LightDepth>,
     pyramid: Option<DepthPyramid>,
     list: Option<PenumbraList>,
     table: Option<SummedArea>,
@@ -84,7 +84,7 @@ impl<S: Soft> Describe for Summed<S> {
             warp: uniform(gpu, "depth warp", &plan.warp),
             soft: uniform(gpu, "soft", &plan.soft),
             plan,
-            map: None,
+            depth: None,
             pyramid: None,
             list: None,
             table: None,
@@ -96,14 +96,19 @@ impl<S: Soft> Describe for Summed<S> {
 impl<S: Soft> Technique for Summed<S> {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         let (gpu, size) = (recorder.gpu, self.plan.table.size);
-        let map = DepthMap::of_light(&mut self.map, recorder, frame, size)?;
+        if !self.depth.as_ref().is_some_and(|d| d.fits(&frame.casters)) {
+            self.depth = Some(LightDepth::new(gpu, size, 1, &frame.casters)?);
+        }
+        let depth = self.depth.as_ref().expect("just made");
+        let map = &depth.casters;
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, size);
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
         let table = SummedArea::ensure(&mut self.table, gpu, self.plan.table)?;
         gpu.queue.write_buffer(&self.warp, 0, &self.plan.warp.over(frame, Nearest::Caster).uniform_bytes());
+        depth.record(recorder, frame)?;
         pyramid.record(recorder, map, frame.frustum.near)?;
         list.record(recorder, frame, map, pyramid, true)?;
-        table.record(recorder, map, S::WARP, &self.warp)?;
+        table.record(recorder, depth, S::WARP, &self.warp)?;
         let set = frame.bindings(bindings! {
             depth_map: &map.texture,
             pyramid_bounds: &pyramid.bounds,
@@ -119,7 +124,7 @@ impl<S: Soft> Technique for Summed<S> {
     }
 
     fn memory(&self) -> Vec<Memory> {
-        let map = self.map.iter().flat_map(DepthMap::memory);
+        let map = self.depth.iter().flat_map(LightDepth::memory);
         let pyramid = self.pyramid.iter().map(DepthPyramid::memory);
         let list = self.list.iter().map(PenumbraList::memory);
         map.chain(pyramid).chain(list).chain(self.table.iter().map(SummedArea::memory)).collect()

@@ -8,8 +8,8 @@ use crate::{settings::Kind, technique::About};
 crate::settings! {
     /// Settings of [`Vssm`].
     pub struct VssmSettings {
-        /// Shadow map, texels a side.
-        map: u32 = 2048, Kind::Integer { min: 16, max: 16384 };
+        /// Shadow map, texels a side; its tables take 64 bytes a texel.
+        map: u32 = 1024, Kind::Integer { min: 16, max: 16384 };
         /// Sums of 32 bits, of 32 bits less their mean, or of 64 bits.
         format: Sums = Sums::Fixed, Kind::Choice { options: Sums::OPTIONS };
         /// Parts a side that a window is divided into, each judged at the receiver's plane there; 1 is none.
@@ -31,12 +31,12 @@ impl Soft for VarianceSoft {
         source: "Yang et al. 2010",
         summary: "blockers' distance and visible part from two moments over boxes of any width",
     };
-    const WARP: &'static str = "techniques::vsm::warp";
+    const WARP: &'static str = "techniques::savsm::warp";
     const SOFT: &'static str = "techniques::vssm::soft";
 
     fn plan(settings: &VssmSettings) -> Plan {
         Plan {
-            table: TableShape { size: settings.map, layers: 1, sums: settings.format },
+            table: TableShape { size: settings.map, layers: 2, sums: settings.format },
             warp: DepthWarp { rounding: TexelFormat::Rg32Float.rounding(), ..Default::default() },
             soft: SoftUniform { search: 0.0, divisions: settings.divisions as i32 },
         }
