@@ -5,13 +5,14 @@
 mod adaptive;
 mod backprojection;
 pub mod kit;
+mod vsm;
 
 use crate::error::CliError;
 use antumbra::settings::nearest;
 use kit::{Findings, Lab};
 
 /// Every suite.
-pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE];
+pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE, vsm::SUITE];
 
 /// What is measured of a paper.
 #[derive(Debug)]

@@ -2,12 +2,9 @@
 
 use std::f64::consts::PI;
 
-/// As in the shader.
-const SPAN: f64 = 0.9;
-
 /// The series for an occluder `u` of the range of depths behind the receiver: about 1 for u > 0, about 0 for u < 0.
 pub fn comparison(terms: u32, u: f64) -> f64 {
-    0.5 + (0..terms).map(|k| weight(terms, k) * (SPAN * odd(k) * u).sin()).sum::<f64>()
+    0.5 + (0..terms).map(|k| weight(terms, k) * (span(terms) * odd(k) * u).sin()).sum::<f64>()
 }
 
 /// How far the series rises over 0 again where it should be 0, and what rounding of its terms adds to that; no more than
@@ -19,6 +16,11 @@ pub fn ripple(terms: u32, rounding: f32) -> f32 {
     let highest = (first_low..=4096).map(below).fold(0.0, f64::max);
     let rounded: f64 = (0..terms).map(|k| 2.0 * weight(terms, k) * f64::from(rounding)).sum();
     (highest + rounded).min(0.2) as f32
+}
+
+/// The part of half a period that depths take.
+fn span(terms: u32) -> f64 {
+    f64::from(terms) / f64::from(terms + 1)
 }
 
 fn odd(term: u32) -> f64 {

@@ -1,7 +1,7 @@
 //! A shadow map that can be filtered: what a technique stores of each texel's depths, blurred, with a mip chain.
 
-pub(crate) mod fourier;
 mod format;
+pub(crate) mod fourier;
 pub(crate) mod warp;
 
 pub use format::TexelFormat;
@@ -133,8 +133,11 @@ impl MomentMap {
 
     fn blur(&self, recorder: &mut Recorder) -> Result<(), Error> {
         let Some(between) = &self.between else { return Ok(()) };
-        let blur = recorder.gpu.compute_pipeline(&self.key("passes::moments::blur").with::<BlurUniform>(), "blur_texels")?;
-        for (axis, (source, target)) in [(&self.levels[0], &between.view), (&between.view, &self.levels[0])].iter().enumerate() {
+        let blur =
+            recorder.gpu.compute_pipeline(&self.key("passes::moments::blur").with::<BlurUniform>(), "blur_texels")?;
+        for (axis, (source, target)) in
+            [(&self.levels[0], &between.view), (&between.view, &self.levels[0])].iter().enumerate()
+        {
             let kernel = self.blur.at(axis as u32);
             let set = bindings! { blur: &kernel, source: *source, blurred: *target };
             recorder.compute("moment blur", &blur, set, Work::Threads(self.threads(0)));

@@ -49,9 +49,11 @@ impl DepthWarp {
             Nearest::Receiver => first,
             Nearest::Caster => nearest_caster,
         };
-        // A receiver at either end is told from what is clamped there by rounding only, so the range goes on a little.
-        let margin = 1e-3 * (farthest - nearest).max(1e-3 * farthest);
-        let (nearest, length) = (nearest - margin, farthest - nearest + 2.0 * margin);
+        // An occluder that is clamped to the near end must stay before the nearest receiver by more than that is moved by
+        // its computed errors, and empty space behind the farthest.
+        let (nearest, farthest) = (nearest - 0.02 * farthest, farthest * 1.001);
+        let nearest = nearest.max(1e-3 * farthest);
+        let length = farthest - nearest;
         let (farthest_q, nearest_q) = (1.0 / (nearest + length), 1.0 / nearest);
         DepthWarp {
             nearest,

@@ -63,11 +63,7 @@ impl SummedArea {
     }
 
     /// Makes a table in `slot` unless one of this shape is there.
-    pub fn ensure<'a>(
-        slot: &'a mut Option<SummedArea>,
-        gpu: &Gpu,
-        shape: TableShape,
-    ) -> Result<&'a SummedArea, Error> {
+    pub fn ensure<'a>(slot: &'a mut Option<SummedArea>, gpu: &Gpu, shape: TableShape) -> Result<&'a SummedArea, Error> {
         if slot.as_ref().is_none_or(|t| t.shape != shape) {
             *slot = None; // Frees the old table before the new one is made.
             *slot = Some(SummedArea::new(gpu, shape)?);
@@ -85,7 +81,8 @@ impl SummedArea {
         warp: &wgpu::Buffer,
     ) -> Result<(), Error> {
         let key = |module| {
-            let key = ShaderKey::new(module).part("warp", part).with::<crate::frame::FrameUniform>().with::<DepthWarp>();
+            let key =
+                ShaderKey::new(module).part("warp", part).with::<crate::frame::FrameUniform>().with::<DepthWarp>();
             key.feature("fixed", self.shape.sums == Sums::Fixed).feature("background", depth.background.is_some())
         };
         let source = bindings! {

@@ -7,7 +7,7 @@ use crate::passes::classify::PenumbraList;
 use crate::passes::depth_pyramid::DepthPyramid;
 use crate::passes::light_depth::LightDepth;
 use crate::passes::moments::{DepthWarp, Nearest};
-use crate::passes::summed_area::{Sums, SummedArea, TableShape};
+use crate::passes::summed_area::{SummedArea, Sums, TableShape};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
