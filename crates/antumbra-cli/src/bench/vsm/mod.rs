@@ -35,22 +35,21 @@ pub struct Job {
     pub frames: u32,
 }
 
+impl Job {
+    fn order<'a>(&'a self, truth: &'a TruthArgs) -> Order<'a> {
+        let Job { name, scene, size, specs, pictures, frames, .. } = self;
+        Order { name, scene, size: *size, specs, frames: *frames, truth, pictures: *pictures }
+    }
+}
+
 fn run(lab: &Lab) -> Result<Findings, CliError> {
     let parts = [tables::jobs(lab)?, figures::jobs(lab)?, family::jobs(lab)?];
     let counts = [parts[0].len(), parts[1].len()];
     let jobs: Vec<Job> = parts.into_iter().flatten().collect();
     let truth = &lab.args.truth;
     let through_pixel = TruthArgs { light_samples: truth.pixel_samples, ..truth.clone() };
-    let order = |job: &Job| Order {
-        name: &job.name,
-        scene: &job.scene,
-        size: job.size,
-        specs: &job.specs,
-        frames: job.frames,
-        truth: if job.hard { &through_pixel } else { truth },
-        pictures: job.pictures,
-    };
-    let trials: Vec<Trial> = lab.trials(&jobs.iter().map(order).collect::<Vec<_>>())?;
+    let trials: Vec<Trial> = lab
+        .trials(&jobs.iter().map(|job| job.order(if job.hard { &through_pixel } else { truth })).collect::<Vec<_>>())?;
     Ok(findings(trials, counts))
 }
 

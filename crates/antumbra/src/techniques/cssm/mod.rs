@@ -9,9 +9,9 @@ crate::settings! {
     /// Settings of [`Cssm`].
     pub struct CssmSettings {
         /// Shadow map, texels a side; its tables take 32 bytes a texel for each term.
-        map: u32 = 1024, Kind::Integer { min: 16, max: 8192 };
+        map: u32 = 512, Kind::Integer { min: 16, max: 8192 };
         /// Terms of the series.
-        terms: u32 = 4, Kind::Integer { min: 1, max: 16 };
+        terms: u32 = 8, Kind::Integer { min: 1, max: 16 };
     }
 }
 
