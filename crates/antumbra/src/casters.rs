@@ -163,6 +163,7 @@ pub struct Casters {
     pub(crate) item_count: u32,
     pub(crate) cluster_bounds: wgpu::Buffer,
     triangle_count: u64,
+    some_only_receive: bool,
     bounds: Aabb,
     occluder_bounds: Aabb,
 }
@@ -210,6 +211,11 @@ impl Casters {
         self.item_count
     }
 
+    /// True if some surfaces take shadows and cast none.
+    pub fn some_only_receive(&self) -> bool {
+        self.some_only_receive
+    }
+
     /// World-space box around everything.
     pub fn bounds(&self) -> Aabb {
         self.bounds
@@ -232,6 +238,7 @@ pub(crate) struct CastersBuilder<'a> {
     batches: Vec<Batch>,
     words: Vec<[u32; 4]>,
     triangle_count: u64,
+    some_only_receive: bool,
     white: (wgpu::TextureView, wgpu::Sampler),
     pub bounds: Aabb,
     pub occluder_bounds: Aabb,
@@ -253,6 +260,7 @@ impl<'a> CastersBuilder<'a> {
             batches: Vec::new(),
             words: Vec::new(),
             triangle_count: 0,
+            some_only_receive: false,
             white: (white.view, sampler),
             bounds: Aabb::EMPTY,
             occluder_bounds: Aabb::EMPTY,
@@ -269,6 +277,7 @@ impl<'a> CastersBuilder<'a> {
         layout.first_item = self.words.len() as u32;
         for item in items {
             self.triangle_count += u64::from(item.triangle_count);
+            self.some_only_receive |= item.role == Role::Receiver;
             self.words.push(item.words());
         }
         layout.item_count = self.words.len() as u32 - layout.first_item;
@@ -296,6 +305,7 @@ impl<'a> CastersBuilder<'a> {
             cluster_bounds: storage_buffer(self.gpu, "cluster bounds", words.len() as u64 * 32),
             batches: self.batches,
             triangle_count: self.triangle_count,
+            some_only_receive: self.some_only_receive,
             bounds: self.bounds,
             occluder_bounds: self.occluder_bounds,
         };

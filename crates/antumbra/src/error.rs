@@ -50,6 +50,14 @@ pub enum Error {
         /// The device's limit.
         max: u32,
     },
+    /// A texture format that a setting asks for and the device lacks.
+    #[error("this adapter cannot store `format={format}`; {instead} works on every adapter")]
+    Format {
+        /// As in the setting.
+        format: &'static str,
+        /// What to set instead.
+        instead: &'static str,
+    },
     /// A technique SPEC that cannot be read.
     #[error(transparent)]
     Spec(#[from] crate::settings::SpecError),

@@ -17,6 +17,9 @@ pub struct ShadowFrustum {
     /// Distance from the light's plane of the nearest and of the farthest surface that takes shadows, metres. Maps from
     /// other points of the light are made as much wider as these are apart; a receiver outside of its map counts as lit.
     pub receivers: [f32; 2],
+    /// Distance from the light's plane of the nearest surface that casts, metres; surfaces that are nearer count as there
+    /// for techniques that store depth as a part of a range.
+    pub nearest_caster: f32,
 }
 
 /// Half the widest frustum that is fitted, as a tangent: 160 degrees.
@@ -35,7 +38,8 @@ const SEPARATION: f32 = 2e-3;
 impl ShadowFrustum {
     /// A square frustum of an opening in degrees.
     pub fn of_degrees(fov_deg: f32, near: f32, receivers: [f32; 2]) -> ShadowFrustum {
-        ShadowFrustum { tan_half: Vec2::splat((0.5 * fov_deg).to_radians().tan()), near, receivers }
+        let tan_half = Vec2::splat((0.5 * fov_deg).to_radians().tan());
+        ShadowFrustum { tan_half, near, receivers, nearest_caster: receivers[0] }
     }
 
     /// The smallest frustum around a box, for hosts that know nothing closer. The light's own setting counts if it has
@@ -50,7 +54,12 @@ impl ShadowFrustum {
             return ShadowFrustum::of_degrees(degrees, near_of(far), receivers);
         }
         let tan = corners.iter().fold(Vec2::splat(1e-3), |m, c| m.max(c.truncate().abs() / c.z.max(nearest)));
-        ShadowFrustum { tan_half: tan.min(Vec2::splat(MAX_TAN)) * 1.01, near: near_of(far), receivers }
+        ShadowFrustum {
+            tan_half: tan.min(Vec2::splat(MAX_TAN)) * 1.01,
+            near: near_of(far),
+            receivers,
+            nearest_caster: receivers[0],
+        }
     }
 
     /// The frustum that holds what casts shadows on what a view sees, and these shadows. Surfaces with nothing behind
@@ -86,6 +95,7 @@ impl ShadowFrustum {
             tan_half: (tan * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN)),
             near: around.near,
             receivers: [(1.0 / near_q).clamp(low, high), (1.0 / seen.far_q).clamp(low, high)],
+            nearest_caster: (1.0 / deepest.nearest_q).clamp(low, high),
         }
     }
 }

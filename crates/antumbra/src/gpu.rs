@@ -26,12 +26,18 @@ pub struct Capabilities {
     pub timestamps: bool,
     /// Linear filtering of 32-bit float textures. Without it techniques interpolate in the shader.
     pub float32_filtering: bool,
+    /// Samplers with anisotropy whose footprint is right. Without it techniques filter in the shader.
+    pub anisotropic_filtering: bool,
     /// Blending into 32-bit float targets. Without it techniques accumulate in compute.
     pub float32_blending: bool,
     /// Rasterisation of every touched pixel. Without it triangles are enlarged in the vertex shader.
     pub conservative_rasterization: bool,
     /// Wave operations in compute. Without them workgroup memory is used.
     pub subgroups: bool,
+    /// Texture formats of 16-bit fixed point. Without it they are refused.
+    pub norm16: bool,
+    /// Storing to formats that WebGPU only samples, such as `rg16float`. Without it they are refused.
+    pub adapter_formats: bool,
     /// Layers of a texture array that one render pass can draw. 1: a pass a layer.
     pub layers_per_pass: u32,
     /// Largest side of a 2D texture, in texels.
@@ -44,9 +50,13 @@ impl Capabilities {
         Capabilities {
             timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
             float32_filtering: features.contains(wgpu::Features::FLOAT32_FILTERABLE),
+            // llvmpipe (seen in Mesa 22.3) filters over far more than the footprint, and slowly.
+            anisotropic_filtering: !info.driver.contains("llvmpipe"),
             float32_blending: features.contains(wgpu::Features::FLOAT32_BLENDABLE),
             conservative_rasterization: features.contains(wgpu::Features::CONSERVATIVE_RASTERIZATION),
             subgroups: features.contains(wgpu::Features::SUBGROUP),
+            norm16: features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM),
+            adapter_formats: features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES),
             // llvmpipe (seen in Mesa 22.3) has the layers, but a triangle that covers a whole tile of its rasteriser is
             // drawn into one of them only.
             layers_per_pass: if layered { limits.max_multiview_view_count.clamp(1, 32) } else { 1 },
@@ -81,6 +91,8 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::FLOAT32_BLENDABLE)
     .union(wgpu::Features::CONSERVATIVE_RASTERIZATION)
     .union(wgpu::Features::SUBGROUP)
+    .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
+    .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)
     .union(wgpu::Features::MULTIVIEW);
 
 /// All adapters that can run Antumbra, best first: the order that [`AdapterChoice::Index`] counts in. OpenGL is asked

@@ -77,11 +77,13 @@ pub struct RenderTarget {
     pub layers: u32,
     /// Whether colours are added to what is there.
     pub adds: bool,
+    /// Depths a texel: 1, or 4 by multisampling.
+    pub samples: u32,
 }
 
 impl Default for RenderTarget {
     fn default() -> Self {
-        RenderTarget { colors: Vec::new(), depth: None, layers: 1, adds: false }
+        RenderTarget { colors: Vec::new(), depth: None, layers: 1, adds: false, samples: 1 }
     }
 }
 
@@ -201,7 +203,7 @@ impl PipelineCache {
                 stencil: Default::default(),
                 bias: Default::default(),
             }),
-            multisample: Default::default(),
+            multisample: wgpu::MultisampleState { count: target.samples, ..Default::default() },
             fragment: has_fragment.then_some(wgpu::FragmentState {
                 module: &module,
                 entry_point: Some("fragment"),

@@ -35,6 +35,21 @@ impl Texture {
         Texture { view: texture.create_view(&Default::default()), texture }
     }
 
+    /// A depth texture with `samples` depths a texel.
+    pub fn depth(gpu: &Gpu, label: &str, size: [u32; 2], samples: u32, usage: wgpu::TextureUsages) -> Texture {
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some(label),
+            size: wgpu::Extent3d { width: size[0], height: size[1], depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: samples,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Depth32Float,
+            usage,
+            view_formats: &[],
+        });
+        Texture { view: texture.create_view(&Default::default()), texture }
+    }
+
     /// A texture of `layers` layers and `mips` levels; its view is an array whatever their number.
     pub fn array(
         gpu: &Gpu,

@@ -16,6 +16,20 @@ pub struct ShaderKey {
     pub features: Vec<&'static str>,
     /// WGSL text of the structs that the host shares, importable from `package::host`.
     pub structs: String,
+    /// Modules that stand in for a name: what imports from `package::NAME` gets this module, given as a path below `src`.
+    pub parts: Vec<(&'static str, &'static str)>,
+    /// What `StorageTarget`, importable from `package::host`, is an array of.
+    pub target: StorageFormat,
+}
+
+/// The WGSL name of a format that shaders store to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct StorageFormat(pub &'static str);
+
+impl Default for StorageFormat {
+    fn default() -> Self {
+        StorageFormat("rgba32float")
+    }
 }
 
 impl ShaderKey {
@@ -29,6 +43,18 @@ impl ShaderKey {
         if on {
             self.features.push(name);
         }
+        self
+    }
+
+    /// Puts a module in the place of a name: one shader serves several techniques that differ in a few functions.
+    pub fn part(mut self, name: &'static str, module: &'static str) -> Self {
+        self.parts.push((name, module));
+        self
+    }
+
+    /// Sets the format of `StorageTarget`.
+    pub fn storing(mut self, format: StorageFormat) -> Self {
+        self.target = format;
         self
     }
 
@@ -117,7 +143,15 @@ impl Program {
         for (path, text) in SOURCES {
             resolver.add_module(module_path(path), (*text).into());
         }
-        resolver.add_module(module_path("package::host"), key.structs.as_str().into());
+        for (name, module) in &key.parts {
+            let path = format!("package::{module}");
+            let (_, text) =
+                SOURCES.iter().find(|(p, _)| *p == path).ok_or_else(|| error(format!("there is no module {path}")))?;
+            resolver.add_module(module_path(&format!("package::{name}")), (*text).into());
+        }
+        let StorageFormat(target) = key.target;
+        let host = format!("{}\nalias StorageTarget = texture_storage_2d_array<{target}, write>;\n", key.structs);
+        resolver.add_module(module_path("package::host"), host.into());
         let mut linker = Wesl::new("").set_custom_resolver(resolver);
         // Names are unique over all modules (a clash does not validate), so bindings keep theirs.
         linker.set_mangler(ManglerKind::None);
@@ -187,6 +221,20 @@ mod tests {
         names
     }
 
+    /// What can stand in for the name that a module, or a shared one that it imports, imports from: every module of
+    /// that name.
+    fn parts_of(text: &str) -> Vec<Vec<(&'static str, &'static str)>> {
+        let asks = |name: &str| {
+            let own = text.contains(&format!("package::{name}::"));
+            own || name == "warp" && text.contains("package::shaders::stored_texel::")
+        };
+        let Some(name) = ["warp", "soft"].into_iter().find(|name| asks(name)) else { return vec![Vec::new()] };
+        // Techniques that are read by a module `soft` have nothing for a lookup.
+        let serves = |module: &str| !text.contains("package::warp::visible") || module.contains("fn visible(");
+        let modules = SOURCES.iter().filter(|(path, text)| path.ends_with(&format!("::{name}")) && serves(text));
+        modules.map(|(path, _)| vec![(name, path.strip_prefix("package::").unwrap())]).collect()
+    }
+
     #[test]
     fn every_variant_of_every_entry_module_composes_and_validates() {
         let structs: String = HOST_STRUCTS.iter().map(|wgsl| wgsl()).collect();
@@ -197,16 +245,21 @@ mod tests {
             }
             let features = features_of(text);
             for mask in 0..1u32 << features.len() {
-                let on = features.iter().enumerate().filter(|(i, _)| mask >> i & 1 == 1).map(|(_, f)| *f).collect();
-                let key = ShaderKey {
-                    module: path.strip_prefix("package::").unwrap(),
-                    features: on,
-                    structs: structs.clone(),
-                };
-                if let Err(e) = Program::compose(&key) {
-                    panic!("{e} with features {:?}", key.features);
+                let on: Vec<_> =
+                    features.iter().enumerate().filter(|(i, _)| mask >> i & 1 == 1).map(|(_, f)| *f).collect();
+                for parts in parts_of(text) {
+                    let key = ShaderKey {
+                        module: path.strip_prefix("package::").unwrap(),
+                        features: on.clone(),
+                        structs: structs.clone(),
+                        parts,
+                        ..Default::default()
+                    };
+                    if let Err(e) = Program::compose(&key) {
+                        panic!("{e} with features {:?} and parts {:?}", key.features, key.parts);
+                    }
+                    variants += 1;
                 }
-                variants += 1;
             }
         }
         assert!(variants >= 10, "only {variants} variants found: are the shaders embedded?");

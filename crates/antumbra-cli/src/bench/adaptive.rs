@@ -113,13 +113,29 @@ fn run(lab: &Lab) -> Result<Findings, CliError> {
     let mut trials = Vec::new();
     for setup in &SETUPS {
         let scene = &setup.scene()?;
-        trials.push(lab.trial(&Order { name: setup.name, scene, size, specs: &rows, frames, truth })?);
+        trials.push(lab.trial(&Order {
+            name: setup.name,
+            scene,
+            size,
+            specs: &rows,
+            frames,
+            truth,
+            pictures: false,
+        })?);
     }
     let scene = &SETUPS[MEDIUM].scene()?;
-    let sweep = Order { name: "sweeps", scene, size: part(2), specs: &sweep, frames, truth };
+    let sweep = Order { name: "sweeps", scene, size: part(2), specs: &sweep, frames, truth, pictures: false };
     trials.push(lab.trial(&sweep)?);
     let (scene, truth) = (&builtin::build(DISK)?, &through_the_middle);
-    trials.push(lab.trial(&Order { name: "patterns", scene, size: part(4), specs: &patterns, frames: 0, truth })?);
+    trials.push(lab.trial(&Order {
+        name: "patterns",
+        scene,
+        size: part(4),
+        specs: &patterns,
+        frames: 0,
+        truth,
+        pictures: false,
+    })?);
     Ok(findings(trials))
 }
 

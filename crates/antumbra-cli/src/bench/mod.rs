@@ -6,13 +6,14 @@ mod adaptive;
 mod backprojection;
 pub mod kit;
 mod ssm;
+mod vsm;
 
 use crate::error::CliError;
 use antumbra::settings::nearest;
 use kit::{Findings, Lab};
 
 /// Every suite.
-pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE, ssm::SUITE];
+pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE, ssm::SUITE, vsm::SUITE];
 
 /// What is measured of a paper.
 #[derive(Debug)]

@@ -33,6 +33,8 @@ pub enum Surfaces {
     Occluders,
     /// What is a receiver there.
     Receivers,
+    /// What only takes shadows.
+    Background,
 }
 
 /// Bytes of one set of draw arguments with its count of triangles, padded to the offset that bindings need.
@@ -88,6 +90,7 @@ impl Culling {
         let key = ShaderKey::new("passes::culling")
             .feature("occluders", surfaces == Surfaces::Occluders)
             .feature("receivers", surfaces == Surfaces::Receivers)
+            .feature("background", surfaces == Surfaces::Background)
             .with::<MapView>()
             .with::<BatchLayout>();
         let pipeline = recorder.gpu.compute_pipeline(&key, "cull")?;

@@ -18,6 +18,7 @@ pub struct DepthMap {
     /// `Depth32Float`, `size` x `size`.
     pub texture: Texture,
     size: u32,
+    samples: u32,
     view: wgpu::Buffer,
     culling: Culling,
 }
@@ -28,6 +29,8 @@ pub(crate) struct Drawing<'a> {
     pub label: &'a str,
     /// What is drawn.
     pub surfaces: Surfaces,
+    /// `Greater` keeps the nearest surface of each texel, `Less` the farthest; depth is reversed.
+    pub kept: wgpu::CompareFunction,
     /// Where the farthest surface of each texel is kept.
     pub farthest: Option<Farthest<'a>>,
     /// Buffers that every surface of a texel is handed to; see [`DepthLayers`](crate::passes::depth_layers::DepthLayers).
@@ -46,20 +49,25 @@ pub(crate) struct Farthest<'a> {
 impl<'a> Drawing<'a> {
     /// The nearest of these surfaces.
     pub fn of(label: &'a str, surfaces: Surfaces) -> Drawing<'a> {
-        Drawing { label, surfaces, farthest: None, layers: None }
+        Drawing { label, surfaces, kept: wgpu::CompareFunction::Greater, farthest: None, layers: None }
     }
 }
 
 impl DepthMap {
     /// An empty map of `size` texels a side.
     pub fn new(gpu: &Gpu, size: u32, casters: &Casters) -> Result<DepthMap, Error> {
+        DepthMap::multisampled(gpu, size, 1, casters)
+    }
+
+    /// An empty map of `size` texels a side with 1 or 4 depths in each.
+    pub fn multisampled(gpu: &Gpu, size: u32, samples: u32, casters: &Casters) -> Result<DepthMap, Error> {
         gpu.check_size("shadow map", size, size)?;
-        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC;
+        let read = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let usage = if samples == 1 { read | wgpu::TextureUsages::COPY_SRC } else { read };
         Ok(DepthMap {
-            texture: Texture::new(gpu, "depth map", [size; 2], 1, wgpu::TextureFormat::Depth32Float, usage),
+            texture: Texture::depth(gpu, "depth map", [size; 2], samples, usage),
             size,
+            samples,
             view: uniform(gpu, "map view", &MapView::new(Mat4::IDENTITY)),
             culling: Culling::new(gpu, casters),
         })
@@ -78,9 +86,9 @@ impl DepthMap {
         Ok(slot.as_ref().expect("just made"))
     }
 
-    /// True if it is of this size for these casters.
+    /// True if it is of this size for these casters, with one depth a texel.
     pub fn fits(&self, size: u32, casters: &Casters) -> bool {
-        self.size == size && self.culling.fits(casters)
+        self.size == size && self.samples == 1 && self.culling.fits(casters)
     }
 
     /// Makes a map of `size` texels a side in `slot` if need be and draws what the light's centre sees.
@@ -112,7 +120,8 @@ impl DepthMap {
         let view = MapView::new(clip_from_world);
         recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
         self.culling.record(recorder, "cluster culling", casters, drawing.surfaces, &self.view)?;
-        let target = RenderTarget { depth: Some(wgpu::CompareFunction::Greater), ..RenderTarget::default() };
+        let depth = Some(drawing.kept);
+        let target = RenderTarget { depth, samples: self.samples, ..RenderTarget::default() };
         let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>().with::<LayerShape>();
         let key = key.feature("layers", drawing.layers.is_some()).feature("farthest", drawing.farthest.is_some());
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
@@ -123,7 +132,13 @@ impl DepthMap {
             recorder.encoder.clear_buffer(depths, 0, None);
             set.extend_from_slice(bindings! { background: &before.texture, farthest_depths: depths });
         }
-        recorder.render_pass(drawing.label, &[], Some(depth_target(&self.texture.view)), |gpu, pass| {
+        // Reversed depth: what is infinitely far is 0, and the nearest of all 1.
+        let nothing = if drawing.kept == wgpu::CompareFunction::Less { 1.0 } else { 0.0 };
+        let cleared = wgpu::RenderPassDepthStencilAttachment {
+            depth_ops: Some(wgpu::Operations { load: wgpu::LoadOp::Clear(nothing), store: wgpu::StoreOp::Store }),
+            ..depth_target(&self.texture.view)
+        };
+        recorder.render_pass(drawing.label, &[], Some(cleared), |gpu, pass| {
             for (i, batch) in casters.batches.iter().enumerate() {
                 let pipeline = if batch.masked { &masked } else { &opaque };
                 pass.set_pipeline(&pipeline.pipeline);

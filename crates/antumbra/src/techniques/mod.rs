@@ -4,12 +4,22 @@ use crate::technique::{TechniqueInfo, entry};
 
 pub mod adaptive_sampling;
 pub mod backprojection;
+pub mod csm;
+pub mod cssm;
+pub mod esm;
+pub mod evsm;
 pub mod hard;
+pub mod msm;
 pub mod packet;
 pub mod pcf;
 pub mod pcss;
+pub mod prefiltered;
+pub mod savsm;
 pub mod ssm;
+pub mod summed;
 pub mod uniform_sampling;
+pub mod vsm;
+pub mod vssm;
 
 /// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
 pub const TECHNIQUES: &[TechniqueInfo] = &[
@@ -17,6 +27,14 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<pcf::Pcf>(),
     entry::<pcss::Pcss>(),
     entry::<ssm::Ssm>(),
+    entry::<vsm::Vsm>(),
+    entry::<evsm::Evsm>(),
+    entry::<msm::Msm>(),
+    entry::<esm::Esm>(),
+    entry::<csm::Csm>(),
+    entry::<savsm::Savsm>(),
+    entry::<vssm::Vssm>(),
+    entry::<cssm::Cssm>(),
     entry::<backprojection::Backprojection>(),
     entry::<packet::Packet>(),
     entry::<uniform_sampling::UniformSampling>(),

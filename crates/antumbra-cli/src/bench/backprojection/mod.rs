@@ -71,7 +71,15 @@ struct Job {
 impl Job {
     fn order<'a>(&'a self, lab: &'a Lab) -> Order<'a> {
         let (frames, truth) = (lab.args.gpu.frames, &lab.args.truth);
-        Order { name: &self.name, scene: &self.scene, size: self.size, specs: &self.specs, frames, truth }
+        Order {
+            name: &self.name,
+            scene: &self.scene,
+            size: self.size,
+            specs: &self.specs,
+            frames,
+            truth,
+            pictures: false,
+        }
     }
 }
 

@@ -31,6 +31,8 @@ pub struct Part {
 pub enum Shown {
     /// The truth of these trials (their places in [`Findings::trials`]), as small pictures.
     Pictures(Vec<usize>),
+    /// What the techniques of a trial (its place in [`Findings::trials`]) made, if that was kept, beside the truth.
+    Runs(usize),
     /// A table.
     Table(Table),
     /// Curves.

@@ -47,6 +47,8 @@ pub struct Order<'a> {
     pub frames: u32,
     /// How the truth is traced.
     pub truth: &'a TruthArgs,
+    /// Whether the picture that each technique makes is kept to be shown.
+    pub pictures: bool,
 }
 
 /// A scene at one size, and what several techniques made of it one after another.
@@ -95,6 +97,9 @@ pub struct Run {
     /// What it took.
     #[serde(flatten)]
     pub cost: Cost,
+    /// The scene shaded with what it found, if that is to be shown.
+    #[serde(skip)]
+    pub picture: Option<RgbImage>,
 }
 
 impl Lab<'_> {
@@ -124,10 +129,15 @@ impl Lab<'_> {
         let drawn = self.draw_all(order, &renderer)?;
         let truth = truth::of(scene, size, order.truth)?;
         progress::check_cancelled()?;
-        let runs = specs.iter().zip(drawn).map(|(spec, drawn)| Run::new(spec, drawn, &truth));
-        let runs = runs.collect::<Result<_, _>>()?;
-        renderer.write_visibility(self.gpu, &truth.reference.visibility);
-        let data = setup::picture(self.gpu, &renderer)?;
+        let shaded = |visibility: &[f32]| -> Result<RgbImage, CliError> {
+            renderer.write_visibility(self.gpu, visibility);
+            Ok(RgbImage { width: size[0], height: size[1], data: setup::picture(self.gpu, &renderer)? })
+        };
+        let run = |(spec, drawn): (&Spec, Drawn)| {
+            let picture = if order.pictures { Some(shaded(&drawn.visibility)?) } else { None };
+            Run::new(spec, drawn, picture, &truth)
+        };
+        let runs = specs.iter().zip(drawn).map(run).collect::<Result<_, _>>()?;
         Ok(Trial {
             name: order.name.to_owned(),
             scene: scene.name.clone(),
@@ -139,7 +149,7 @@ impl Lab<'_> {
             pixel_samples: order.truth.pixel_samples,
             frames: order.frames,
             truth_error: truth.reference.rms_error(),
-            picture: RgbImage { width: size[0], height: size[1], data },
+            picture: shaded(&truth.reference.visibility)?,
             runs,
         })
     }
@@ -197,7 +207,7 @@ impl Trial {
 }
 
 impl Run {
-    fn new(spec: &Spec, drawn: Drawn, truth: &Truth) -> Result<Run, CliError> {
+    fn new(spec: &Spec, drawn: Drawn, picture: Option<RgbImage>, truth: &Truth) -> Result<Run, CliError> {
         Ok(Run {
             technique: spec.technique.name,
             spec: spec.text.clone(),
@@ -205,6 +215,7 @@ impl Run {
             figures: truth.figures(&spec.text, &drawn.visibility)?,
             work: drawn.work.into_iter().collect(),
             cost: drawn.cost,
+            picture,
         })
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Context, Findings, Shown, Table, Trial};
 use crate::report::{ReportError, frame, lines, pictures, plot, text};
+use antumbra_metrics::RgbImage;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use maud::{Markup, html};
@@ -9,6 +10,7 @@ use maud::{Markup, html};
 /// The whole page, needing nothing else.
 pub fn html(context: &Context, findings: &Findings) -> Result<String, ReportError> {
     let thumbnails: Vec<String> = findings.trials.iter().map(thumbnail).collect::<Result<_, _>>()?;
+    let galleries: Vec<Markup> = findings.trials.iter().map(runs_of).collect::<Result<_, _>>()?;
     let main = html! {
         @for (i, part) in findings.parts.iter().enumerate() {
             section.figures.framed id=(anchor(i)) {
@@ -17,6 +19,7 @@ pub fn html(context: &Context, findings: &Findings) -> Result<String, ReportErro
                 @for shown in &part.shown {
                     @match shown {
                         Shown::Pictures(of) => (pictures_of(findings, of, &thumbnails)),
+                        Shown::Runs(of) => (galleries[*of]),
                         Shown::Table(table) => (drawn_table(table)),
                         Shown::Lines(curves) => (lines::plot(curves)),
                         Shown::Scatter(of) => (plot::scatter(&of.points, &of.groups)),
@@ -62,8 +65,40 @@ fn header(context: &Context, findings: &Findings) -> Markup {
 
 /// Half of the picture each side, embedded.
 fn thumbnail(trial: &Trial) -> Result<String, ReportError> {
-    let png = pictures::rgb(&pictures::halved(&trial.picture))?;
-    Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png)))
+    embedded(&pictures::halved(&trial.picture))
+}
+
+/// Every picture of a trial that was kept, in its own size, with its error.
+fn runs_of(trial: &Trial) -> Result<Markup, ReportError> {
+    let kept: Vec<(&str, &RgbImage, f64)> = trial
+        .runs
+        .iter()
+        .filter_map(|run| Some((run.spec.as_str(), run.picture.as_ref()?, run.figures.rmse)))
+        .collect();
+    if kept.is_empty() {
+        return Ok(html! {});
+    }
+    let shown: Vec<(&str, String, Option<f64>)> = std::iter::once(("truth", &trial.picture, None))
+        .chain(kept.into_iter().map(|(spec, picture, rmse)| (spec, picture, Some(rmse))))
+        .map(|(name, picture, rmse)| Ok((name, embedded(picture)?, rmse)))
+        .collect::<Result<_, ReportError>>()?;
+    Ok(html! {
+        div.gallery.scenes {
+            @for (name, picture, rmse) in &shown {
+                figure {
+                    img src=(picture) width=(trial.width) height=(trial.height) alt=(format!("{}: {name}", trial.name));
+                    figcaption {
+                        b { (spelled(name)) }
+                        @if let Some(rmse) = rmse { span { "RMSE " (text::figure(*rmse)) } }
+                    }
+                }
+            }
+        }
+    })
+}
+
+fn embedded(picture: &RgbImage) -> Result<String, ReportError> {
+    Ok(format!("data:image/png;base64,{}", BASE64_STANDARD.encode(pictures::rgb(picture)?)))
 }
 
 fn pictures_of(findings: &Findings, of: &[usize], thumbnails: &[String]) -> Markup {

@@ -21,6 +21,7 @@ pub fn run(spec: &str, ms: f64, work: &[(&'static str, f64)]) -> Run {
         figures: figures(image(&test), image(&truth), &[true; 4]).unwrap(),
         work: work.iter().copied().collect(),
         cost: Cost { passes: Vec::new(), total_ms: ms, total_bytes: 1 << 20, wall_ms: 2.0 * ms, timing: Timing::Gpu },
+        picture: None,
     }
 }
 
@@ -190,7 +191,8 @@ fn a_trial_measures_each_technique_and_the_penumbra() {
     let specs = ["hard:map=64", "pcss:map=256"].map(|text| text.parse().unwrap());
     let measured = |scene: &Scene| {
         let truth = &args.truth;
-        lab.trial(&Order { name: "a", scene, size: [48, 32], specs: &specs, frames: 1, truth }).unwrap()
+        lab.trial(&Order { name: "a", scene, size: [48, 32], specs: &specs, frames: 1, truth, pictures: false })
+            .unwrap()
     };
     let mut scene = antumbra_scene::builtin::build("square").unwrap();
     let soft = measured(&scene);

@@ -3,12 +3,15 @@
 //! A kernel for a test is written where the test is: `package::host` is the module that a key's `structs` text makes, so
 //! nothing of it is in the library.
 
+mod footprint;
 mod frame;
 mod horizon;
 mod layers;
 mod mask;
+mod moments;
 mod patches;
 mod penumbra;
+mod summed_area;
 
 use crate::recorder::Work;
 use crate::resource::{buffer_of, read_buffer, storage_buffer};
