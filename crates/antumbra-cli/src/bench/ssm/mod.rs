@@ -40,8 +40,10 @@ fn run(lab: &Lab) -> Result<Findings, CliError> {
     let costs = cost::measure(lab, largest, &mut measured)?;
     let scenes: Vec<_> = occluders.iter().map(|o| (o.name.clone(), o.scene(Place::default()))).collect();
     let (size, frames, truth) = (lab.size(SIZE), lab.args.gpu.frames, &lab.args.truth);
-    let orders: Vec<Order> =
-        scenes.iter().map(|(name, scene)| Order { name, scene, size, specs: &specs, frames, truth }).collect();
+    let orders: Vec<Order> = scenes
+        .iter()
+        .map(|(name, scene)| Order { name, scene, size, specs: &specs, frames, truth, pictures: true })
+        .collect();
     let trials = lab.trials(&orders)?;
     let (targets, lead) = targets::part(&at_paper, &costs);
     let mut parts = vec![targets, pictures(&trials)];
