@@ -61,7 +61,7 @@ crate::settings! {
         /// Where the other settings start from.
         quality: Quality = Quality::Balanced, Kind::Choice { options: Quality::OPTIONS };
         /// Shadow map, texels a side.
-        map: u32 = 2048, Kind::Integer { min: 16, max: 16384 };
+        map: u32 = 1536, Kind::Integer { min: 16, max: 16384 };
         /// Layers behind each other that each texel of the map keeps: a surface each, or all between two.
         layers: u32 = 2, Kind::Integer { min: 1, max: 4 };
         /// Surfaces are one layer if the light moves them by fewer texels than this against each other. 0 keeps each apart.
@@ -84,9 +84,10 @@ impl BackprojectionSettings {
     pub fn of_quality(quality: Quality) -> BackprojectionSettings {
         let balanced = BackprojectionSettings { quality, ..Default::default() };
         match quality {
-            Quality::Fast => BackprojectionSettings { map: 1024, window: 2.0, ..balanced },
+            Quality::Fast => BackprojectionSettings { map: 512, window: 2.0, ..balanced },
             Quality::Balanced => balanced,
             Quality::Best => BackprojectionSettings {
+                map: 2048,
                 layers: 4,
                 apart: 4.0,
                 window: 16.0,
