@@ -214,9 +214,12 @@ fn a_stack_gives_its_depths_and_coinciding_surfaces_count_once() {
     }
 }
 
+/// Distances of a layer's nearer end and of its farther one; none where nothing is.
+type Ends = Option<(f32, f32)>;
+
 /// The layers of large sheets at some heights below a light at 4 m that looks straight down, as distances from the light:
 /// of each layer the nearer end and the farther, in any texel.
-fn layers_of_sheets(heights: &[f32], count: u32, gap: f32) -> Vec<Option<(f32, f32)>> {
+fn layers_of_sheets(heights: &[f32], count: u32, gap: f32) -> Vec<Ends> {
     let mut scene = casting(heights.iter().map(|y| quad([0.0, *y, 0.0], [9.0; 2])).collect());
     scene.light = light([0.0, 4.0, 0.0], [0.0; 3], 0.5);
     scene.light.shadow_fov_deg = Some(40.0);
@@ -241,9 +244,9 @@ fn layers_of_sheets(heights: &[f32], count: u32, gap: f32) -> Vec<Option<(f32, f
 fn surfaces_that_the_light_hardly_tells_apart_are_a_layer_with_a_thickness() {
     // At 1, 1.1, 2, 2.2, and 4 m from the light: 1, 0.91, 0.5, 0.45 and 0.25 as inverse distance.
     let heights = [1.8, 3.0, 2.0, 0.0, 2.9];
-    let expect = |count, gap, expected: &[Option<(f32, f32)>]| {
+    let expect = |count, gap, expected: &[Ends]| {
         let found = layers_of_sheets(&heights, count, gap);
-        let off = |(a, b): (&Option<(f32, f32)>, &Option<(f32, f32)>)| match (a, b) {
+        let off = |(a, b): (&Ends, &Ends)| match (a, b) {
             (Some(a), Some(b)) => (a.0 - b.0).abs().max((a.1 - b.1).abs()),
             (a, b) => f32::from(u8::from(a != b)) * 9.0,
         };
