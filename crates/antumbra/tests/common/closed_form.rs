@@ -18,13 +18,17 @@ impl Over {
         super::scene(vec![super::ground(20.0), super::quad(self.center, self.half)], camera, light)
     }
 
-    /// Visible fraction of the light from a point of the plane.
+    /// Visible fraction of the light from a point of the plane. An edge of the light may be 0: a line or a point.
     pub fn visibility(&self, light: &RectLight, p: DVec3) -> f64 {
         let (l, o) = (light.center.as_dvec3(), DVec3::from(self.center.map(f64::from)));
         let grow = l.y / o.y;
         let hidden = |p: f64, l: f64, o: f64, half: f32, edge: f32| {
             let (half, edge) = (f64::from(half), f64::from(edge));
             let (low, high) = (p + (o - half - p) * grow - l, p + (o + half - p) * grow - l);
+            if edge == 0.0 {
+                // The overlap's limit: all or nothing.
+                return if low < 0.0 && high > 0.0 { 1.0 } else { 0.0 };
+            }
             (high.min(edge / 2.0) - low.max(-edge / 2.0)).max(0.0) / edge
         };
         let (size, half) = (light.size, self.half);
