@@ -6,7 +6,7 @@ use antumbra::recorder::Work;
 use antumbra::resource::storage_buffer;
 use antumbra::shader::ShaderKey;
 use antumbra::{AdapterChoice, Error, Gpu, Recorder, Spec, Timer, bindings};
-use common::{builtin, drawn, gpu, technique};
+use common::{builtin, drawn, gpu, quick, technique};
 use pollster::block_on;
 
 /// A kernel that adds one to each number; `package::host` is the module that a key's `structs` text makes.
@@ -82,7 +82,7 @@ fn passes_of_one_name_are_timed_together_in_the_order_of_recording() {
 fn every_pass_of_a_technique_is_timed_under_the_label_that_its_memory_bears() {
     let renderer = drawn(&builtin("square"), [64, 64]);
     for info in antumbra::techniques::TECHNIQUES {
-        let mut made = technique(info.name);
+        let mut made = technique(&quick(info));
         let mut timer = Timer::new(gpu()).expect("makes a timer");
         let mut encoder = gpu().device.create_command_encoder(&Default::default());
         renderer.record_shadow(&mut *made, &mut Recorder::timed(gpu(), &mut encoder, &timer)).expect("records");

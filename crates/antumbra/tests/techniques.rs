@@ -3,10 +3,10 @@
 
 mod common;
 
+use antumbra::scene::SceneRenderer;
 use antumbra::techniques::TECHNIQUES;
-use antumbra::{TechniqueInfo, scene::SceneRenderer};
 use antumbra_scene::builtin::{self, BuiltinInfo};
-use common::{drawn, shadowed, technique};
+use common::{drawn, quick, shadowed, technique};
 
 const SIZE: [u32; 2] = [97, 64];
 
@@ -16,14 +16,6 @@ fn small(info: &BuiltinInfo) -> String {
     let few = info.parameters.iter().filter(|p| counts.contains(&p.name));
     let list: Vec<String> = few.map(|p| format!("{}={}", p.name, p.min.max((p.default / 16.0).round()))).collect();
     format!("{}:{}", info.name, list.join(","))
-}
-
-/// The SPEC of a technique with small and few maps, if it has them.
-fn quick(info: &TechniqueInfo) -> String {
-    let small = [("map", 256), ("samples", 6), ("maps", 9)];
-    let its = small.iter().filter(|(key, _)| info.settings.iter().any(|s| s.key == *key));
-    let values: Vec<String> = its.map(|(key, value)| format!("{key}={value}")).collect();
-    format!("{}:{}", info.name, values.join(","))
 }
 
 /// What is wrong with a technique on a scene.

@@ -23,6 +23,14 @@ pub fn gpu() -> &'static Gpu {
     })
 }
 
+/// The SPEC of a technique with small and few maps, if it has them.
+pub fn quick(info: &antumbra::TechniqueInfo) -> String {
+    let small = [("map", 256), ("samples", 6), ("maps", 9)];
+    let its = small.iter().filter(|(key, _)| info.settings.iter().any(|s| s.key == *key));
+    let values: Vec<String> = its.map(|(key, value)| format!("{key}={value}")).collect();
+    format!("{}:{}", info.name, values.join(","))
+}
+
 /// A technique from its SPEC.
 pub fn technique(spec: &str) -> Box<dyn Technique> {
     spec.parse::<Spec>().unwrap_or_else(|e| panic!("{e}")).make(gpu()).unwrap_or_else(|e| panic!("{spec}: {e}"))

@@ -113,7 +113,7 @@ fn the_border_of_the_map_does_not_bleed() {
     let size = [128, 128];
     let points = common::closed_form::ground_points(&narrow.camera, size);
     for name in ["vsm", "evsm", "msm", "esm", "csm"] {
-        let [inside, beyond] = [("map=256", &narrow), ("map=2048", &wide)]
+        let [inside, beyond] = [("map=128", &narrow), ("map=1024", &wide)]
             .map(|(map, scene)| visibility(scene, &format!("{name}:{map},blur=9"), size));
         let (mut outside, mut worst) = (0, 0f32);
         for (i, p) in points.iter().enumerate().filter_map(|(i, p)| Some((i, (*p)?))) {

@@ -195,9 +195,13 @@ impl Trial {
 
     /// What was drawn, above the rows of a table.
     pub fn heading(&self) -> String {
+        format!("{}: {}", self.name, self.drawn())
+    }
+
+    /// The scene, its size, and how sure the truth is.
+    pub fn drawn(&self) -> String {
         format!(
-            "{}: {}, {} triangles, {:.1} % penumbra, truth ± {}",
-            self.name,
+            "{}, {} triangles, {:.1} % penumbra, truth ± {}",
             self.scene,
             text::count(self.triangles as u64),
             100.0 * self.penumbra,

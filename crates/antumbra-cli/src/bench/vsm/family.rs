@@ -130,9 +130,11 @@ fn by_light(scene: &str, trials: &[Trial]) -> Part {
     shown.extend(full.map(|trial| Shown::Table(error_table(trial))));
     Part {
         title: format!("Error over the size of the light: {scene}"),
-        text: "Against the area light's truth. Hard techniques know a point only, so their error grows with the light. The \
-               table is for the scene's own light."
-            .into(),
+        text:
+            "Against the area light's truth. Hard techniques know a point only, so their error grows with the light. \
+               Under a small light they are nearer, for they filter over the pixel; soft techniques and the comparison \
+               sample its middle, which small pictures show most. The table is for the scene's own light."
+                .into(),
         shown,
     }
 }

@@ -76,9 +76,9 @@ pub fn parts(trials: &[Trial], first: usize) -> Vec<Part> {
     let part = |(i, (trial, figure)): (usize, (&Trial, &Figure))| Part {
         title: figure.title.into(),
         text: format!(
-            "{} The truth is a hard shadow, filtered over the pixel by a box. {}.",
+            "{} The truth is a hard shadow, filtered over the pixel by a box. Drawn is {}.",
             figure.text,
-            trial.heading()
+            trial.drawn()
         ),
         shown: vec![Shown::Runs(first + i), Shown::Table(super::family::error_table(trial))],
     };

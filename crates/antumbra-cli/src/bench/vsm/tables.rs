@@ -75,11 +75,21 @@ const HEADS: [(&str, &str); 7] = [
     ("RMSE", "Root of the mean squared error beside a hard shadow filtered over the pixel"),
     ("MB", "GPU memory that the technique owns, 10⁶ bytes"),
 ];
-const PASS_HEADS: [(&str, &str); 3] = [
-    ("technique", "Name and settings"),
-    ("ms", "GPU milliseconds of the shadow alone"),
-    ("passes", "GPU milliseconds of each pass by its timestamps"),
+/// Columns of passes that techniques share: heading, meaning, and the pass's own name.
+const SHARED_PASSES: [(&str, &str, &str); 6] = [
+    ("culling", "Choosing what is drawn into the map", "cluster culling"),
+    ("depth", "Depth of the nearest casters", "depth map"),
+    ("background", "Depth of the farthest surfaces that only take shadows", "background map"),
+    ("storing", "Moments from depths", "moments"),
+    ("blur", "Gaussian over the map", "moment blur"),
+    ("mips", "Reducing the map to coarser levels", "moment mip chain"),
 ];
+
+fn pass_heads() -> Vec<(&'static str, &'static str)> {
+    let shared = SHARED_PASSES.iter().map(|(head, meaning, _)| (*head, *meaning));
+    let first = [("technique", "Name and settings"), ("ms", "GPU milliseconds of the shadow alone")];
+    first.into_iter().chain(shared).chain([("lookup", "All passes but these: reading the map at each pixel")]).collect()
+}
 
 pub fn parts(trials: &[Trial]) -> Vec<Part> {
     let (by_map, by_picture) = trials.split_at(MAPS.len().min(trials.len()));
@@ -106,7 +116,7 @@ fn part(title: &str, trials: &[Trial], fps: &[[f64; 4]; 6], what: &str) -> Part 
     };
     let passes = |trial: &Trial| Group {
         title: trial.name.clone(),
-        rows: trial.runs.iter().map(|run| vec![run.spec.clone(), run.ms(), passes(run)]).collect(),
+        rows: trial.runs.iter().map(|run| [vec![run.spec.clone(), run.ms()], passes(run)].concat()).collect(),
     };
     Part {
         title: title.into(),
@@ -119,7 +129,7 @@ fn part(title: &str, trials: &[Trial], fps: &[[f64; 4]; 6], what: &str) -> Part 
         ),
         shown: vec![
             Shown::Table(Table { heads: HEADS.to_vec(), groups: trials.iter().enumerate().map(group).collect() }),
-            Shown::Table(Table { heads: PASS_HEADS.to_vec(), groups: trials.iter().map(passes).collect() }),
+            Shown::Table(Table { heads: pass_heads(), groups: trials.iter().map(passes).collect() }),
         ],
     }
 }
@@ -136,10 +146,15 @@ fn row(trial: &Trial, i: usize, run: &Run, paper: f64) -> Vec<String> {
     ]
 }
 
-fn passes(run: &Run) -> String {
-    let own = run.cost.passes.iter().filter(|pass| !pass.host);
-    let each = own.map(|pass| format!("{} {}", pass.name, pass.ms.map_or_else(|| "–".to_owned(), text::ms)));
-    each.collect::<Vec<_>>().join(", ")
+/// Milliseconds of each shared pass by its timestamps, then of all others together.
+fn passes(run: &Run) -> Vec<String> {
+    let sum_of = |is: &dyn Fn(&str) -> bool| {
+        let these = run.cost.passes.iter().filter(|pass| !pass.host && is(&pass.name));
+        let times: Vec<f64> = these.filter_map(|pass| pass.ms).collect();
+        if times.is_empty() { "–".to_owned() } else { text::ms(times.iter().sum()) }
+    };
+    let shared = SHARED_PASSES.iter().map(|(_, _, name)| sum_of(&|pass| pass == *name));
+    shared.chain([sum_of(&|pass| SHARED_PASSES.iter().all(|(_, _, name)| pass != *name))]).collect()
 }
 
 /// Blurred moments beside bilinear comparisons of the same width, at a map of 512.

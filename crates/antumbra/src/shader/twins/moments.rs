@@ -239,6 +239,87 @@ fn four_moments_never_hide_more_than_there_is() {
     assert!(worst.error < 5e-3, "{worst:?}");
 }
 
+/// To the nearest of the fractions that 16 bits hold.
+fn sixteen_bits(fraction: f64) -> f64 {
+    (fraction.clamp(0.0, 1.0) * 65535.0).round() / 65535.0
+}
+
+/// What `techniques/msm/warp.wesl` stores of moments in 16 bits each.
+fn fractions_of(m: [f64; 4]) -> [f64; 4] {
+    let root = 3f64.sqrt();
+    [
+        0.5 + 1.5 * m[0] - 2.0 * m[2],
+        4.0 * (m[1] - m[3]),
+        0.5 + root * (0.5 * m[0] - 2.0 / 9.0 * m[2]),
+        0.5 * (m[1] + m[3]),
+    ]
+}
+
+#[test]
+fn sixteen_bits_of_the_basis_lose_less_than_sixteen_bits_of_the_moments() {
+    // Three readings of two surfaces: unrounded, rounded in the basis, rounded as plain moments, which lie in -1…1 and 0…1.
+    let mut random = Random(13);
+    let (mut input, mut cases) = (Vec::new(), Vec::new());
+    while cases.len() < 20_000 {
+        let (a, b, part) = (random.within(-1.0, 1.0), random.within(-1.0, 1.0), random.within(0.02, 0.98));
+        let z = random.within(-1.0, 1.0);
+        if (z - a).abs() > 0.02 && (z - b).abs() > 0.02 {
+            let points = [(f64::from(a), f64::from(part)), (f64::from(b), 1.0 - f64::from(part))];
+            let exact = moments(&points);
+            let basis = fractions_of(exact);
+            assert!(basis.iter().all(|f| (-1e-9..=1.0 + 1e-9).contains(f)), "{points:?}: {basis:?}");
+            let odd = |m: f64| 2.0 * sixteen_bits(0.5 + 0.5 * m) - 1.0;
+            let plain = [odd(exact[0]), sixteen_bits(exact[1]), odd(exact[2]), sixteen_bits(exact[3])];
+            input.extend([exact, basis.map(sixteen_bits), plain].iter().flatten().map(|m| *m as f32).chain([z]));
+            cases.push((points, f64::from(z), exact, plain));
+        }
+    }
+    let kernel = "import package::shaders::hamburger::hidden_part;
+        import package::techniques::msm::warp::{fractions_of, moments_of};
+        fn at4(k: u32) -> vec4<f32> {
+            return vec4(input[k], input[k + 1u], input[k + 2u], input[k + 3u]);
+        }
+        fn evaluate(at: u32, to: u32) {
+            let basis = moments_of(at4(at + 4u));
+            let back = moments_of(fractions_of(at4(at))) - at4(at);
+            let z = input[at + 12u];
+            for (var k = 0u; k < 4u; k++) { output[to + k] = basis[k]; }
+            output[to + 4u] = max(max(abs(back.x), abs(back.y)), max(abs(back.z), abs(back.w)));
+            output[to + 5u] = hidden_part(basis, z, 6.0e-5);
+            output[to + 6u] = hidden_part(at4(at + 8u), z, 6.0e-5);
+        }";
+    let text = format!("{kernel}\n{}{}", FrameUniform::wgsl(), DepthWarp::wgsl());
+    // Determinant of the matrix (1 m1 m2; m1 m2 m3; m2 m3 m4), which is 0 for two surfaces and below for what no surfaces
+    // have, of moments that are moved as hamburger.wesl does.
+    let possible = |m: [f64; 4]| {
+        let towards = [0.0, 0.375, 0.0, 0.375];
+        let [m1, m2, m3, m4] = [0, 1, 2, 3].map(|k| m[k] + 6e-5 * (towards[k] - m[k]));
+        m2 * m4 - m3 * m3 - m1 * (m1 * m4 - m2 * m3) + m2 * (m1 * m3 - m2 * m2) >= 0.0
+    };
+    let (mut there_and_back, mut too_dark) = (0f64, Worst::default());
+    let (mut lost, mut off, mut impossible) = ([0f64; 2], [0f64; 2], [0usize; 2]);
+    let count = cases.len() as f64;
+    for (got, (points, z, exact, plain)) in evaluate(&text, &input, 13, 7).iter().zip(&cases) {
+        there_and_back = there_and_back.max(f64::from(got[4]));
+        let hidden: f64 = points.iter().filter(|(p, _)| p < z).map(|(_, w)| w).sum();
+        too_dark.see(f64::from(got[5]) - hidden, || format!("{points:?} at {z}: {got:?}, there is {hidden}"));
+        let basis = [0, 1, 2, 3].map(|k| f64::from(got[k]));
+        for (k, m) in [basis, *plain].into_iter().enumerate() {
+            lost[k] += (0..4).map(|i| (m[i] - exact[i]).powi(2)).sum::<f64>() / count;
+            off[k] += (f64::from(got[5 + k]) - hidden).abs() / count;
+            impossible[k] += usize::from(!possible(m));
+        }
+    }
+    let lost = lost.map(f64::sqrt);
+    println!(
+        "basis and plain: moments off by {lost:?}, impossible {impossible:?} of {count}, hidden part off by {off:?}; \
+         the basis there and back {there_and_back}, darkest {too_dark:?}"
+    );
+    assert!(there_and_back < 1e-6, "{there_and_back}");
+    assert!(lost[0] < lost[1] && 10 * impossible[0] < impossible[1], "moments {lost:?}, impossible {impossible:?}");
+    assert!(too_dark.error < 5e-3, "{too_dark:?}");
+}
+
 #[test]
 fn the_series_in_the_shader_is_that_of_the_host() {
     let gpu = gpu();
