@@ -42,7 +42,7 @@ fn run(lab: &Lab) -> Result<Findings, CliError> {
     let (size, frames, truth) = (lab.size(SIZE), lab.args.gpu.frames, &lab.args.truth);
     let orders: Vec<Order> = scenes
         .iter()
-        .map(|(name, scene)| Order { name, scene, size, specs: &specs, frames, truth, pictures: true })
+        .map(|(name, scene)| Order { name, scene, size, specs: &specs, frames, truth, pictures: false })
         .collect();
     let trials = lab.trials(&orders)?;
     let (targets, lead) = targets::part(&at_paper, &costs);
@@ -72,8 +72,8 @@ fn short(name: &str) -> String {
 fn pictures(trials: &[Trial]) -> Part {
     Part {
         title: "The scenes".into(),
-        text: "The occluders under a light of 0.1 at a height of 0.75, shaded with the truth. What the techniques \
-               make of them is in the CSV: there occluders count too, which take no shadow by `ssm`."
+        text: "The occluders under a light of 0.1 at a height of 0.75, shaded with the truth. What the technique makes of \
+               them is in the CSV, where the occluders count too, which take no shadow."
             .into(),
         shown: vec![Shown::Pictures((0..trials.len()).collect())],
     }
