@@ -18,18 +18,18 @@ fn hovering(size: Vec2) -> Scene {
 #[test]
 fn lines_and_points_are_lights_too() {
     let mut faults = Vec::new();
-    for (size, bound) in [
-        (Vec2::new(0.9, 0.7), 0.008),
-        (Vec2::new(1.1, 0.0), 0.002),
-        (Vec2::new(0.0, 0.8), 0.002),
-        // An edge through a pixel: all or nothing.
-        (Vec2::ZERO, 0.005),
+    for (size, bound, leak) in [
+        (Vec2::new(0.9, 0.7), 0.008, 0.001),
+        (Vec2::new(1.1, 0.0), 0.002, 0.001),
+        (Vec2::new(0.0, 0.8), 0.002, 0.001),
+        // The truth is all or nothing, an edge of the map a texel wide: a few pixels lie in it.
+        (Vec2::ZERO, 0.003, 0.003),
     ] {
         let judged = Judged::new(&hovering(size), SIZE, 256);
         for spec in ["backprojection:window=16", "packet:window=16"] {
             let f = judged.figures(spec);
             println!("{} by {spec}: average {:.4}, max {:.3}, leak {:.4}", judged.name, f.average_error, f.max, f.leak);
-            if f.average_error > bound || f.leak > 0.001 || f.acne > 0.001 {
+            if f.average_error > bound || f.leak > leak || f.acne > 0.001 {
                 faults.push(format!("{} by {spec}: {f:?}", judged.name));
             }
         }
