@@ -157,6 +157,11 @@ impl DepthMap {
 
     /// GPU memory by pass.
     pub fn memory(&self) -> [Memory; 2] {
-        [Memory::new("cluster culling", self.culling.bytes()), Memory::new("depth map", self.texture.bytes())]
+        self.memory_of("depth map")
+    }
+
+    /// The same of a map that is drawn by a pass of this label.
+    pub(crate) fn memory_of(&self, label: &'static str) -> [Memory; 2] {
+        [Memory::new("cluster culling", self.culling.bytes()), Memory::new(label, self.texture.bytes())]
     }
 }

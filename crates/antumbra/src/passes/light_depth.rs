@@ -7,6 +7,9 @@ use crate::recorder::Recorder;
 use crate::technique::Memory;
 use crate::{Error, Frame, Gpu};
 
+/// Label of the pass that draws what only takes shadows.
+const BACKGROUND: &str = "background map";
+
 /// The nearest caster of each texel and, behind it, the farthest of the surfaces that only take shadows. Were these left
 /// out, the mean depth beside a shadow would be that of empty space; were they drawn with the casters, they would cast.
 pub struct LightDepth {
@@ -37,7 +40,7 @@ impl LightDepth {
         self.casters.record(recorder, &frame.casters, clip_from_world)?;
         let Some(background) = &self.background else { return Ok(()) };
         let kept = wgpu::CompareFunction::Less;
-        let drawing = Drawing { kept, ..Drawing::of("background map", Surfaces::Background) };
+        let drawing = Drawing { kept, ..Drawing::of(BACKGROUND, Surfaces::Background) };
         background.draw(recorder, &frame.casters, clip_from_world, &drawing)
     }
 
@@ -48,10 +51,7 @@ impl LightDepth {
 
     /// GPU memory by pass.
     pub fn memory(&self) -> Vec<Memory> {
-        let background = self.background.iter().flat_map(DepthMap::memory).map(|m| match m.pass {
-            "depth map" => Memory::new("background map", m.bytes),
-            _ => m,
-        });
+        let background = self.background.iter().flat_map(|map| map.memory_of(BACKGROUND));
         self.casters.memory().into_iter().chain(background).collect()
     }
 }

@@ -184,6 +184,13 @@ fn moments(points: &[(f64, f64)]) -> [f64; 4] {
     [1, 2, 3, 4].map(|k| points.iter().map(|(z, w)| w * z.powi(k)).sum())
 }
 
+/// What four moments say is hidden before a depth.
+const HIDDEN_PART: &str = "import package::shaders::hamburger::hidden_part;
+    fn evaluate(at: u32, to: u32) {
+        let m = vec4(input[at], input[at + 1u], input[at + 2u], input[at + 3u]);
+        output[to] = hidden_part(m, input[at + 4u], 3.0e-7);
+    }";
+
 #[test]
 fn four_moments_of_two_surfaces_give_what_they_hide() {
     let mut random = Random(11);
@@ -198,13 +205,8 @@ fn four_moments_of_two_surfaces_give_what_they_hide() {
             cases.push((points, f64::from(z)));
         }
     }
-    let kernel = "import package::shaders::hamburger::hidden_part;
-        fn evaluate(at: u32, to: u32) {
-            let m = vec4(input[at], input[at + 1u], input[at + 2u], input[at + 3u]);
-            output[to] = hidden_part(m, input[at + 4u], 3.0e-7);
-        }";
     let mut worst = Worst::default();
-    for (got, (points, z)) in evaluate(kernel, &input, 5, 1).iter().zip(&cases) {
+    for (got, (points, z)) in evaluate(HIDDEN_PART, &input, 5, 1).iter().zip(&cases) {
         let exact: f64 = points.iter().filter(|(p, _)| p < z).map(|(_, w)| w).sum();
         worst.see((f64::from(got[0]) - exact).abs(), || format!("{points:?} at {z}: {got:?} instead of {exact}"));
     }
@@ -225,13 +227,8 @@ fn four_moments_never_hide_more_than_there_is() {
         input.extend(moments(&points).map(|m| m as f32).iter().chain([&z]));
         cases.push((points, f64::from(z)));
     }
-    let kernel = "import package::shaders::hamburger::hidden_part;
-        fn evaluate(at: u32, to: u32) {
-            let m = vec4(input[at], input[at + 1u], input[at + 2u], input[at + 3u]);
-            output[to] = hidden_part(m, input[at + 4u], 3.0e-7);
-        }";
     let mut worst = Worst::default();
-    for (got, (points, z)) in evaluate(kernel, &input, 5, 1).iter().zip(&cases) {
+    for (got, (points, z)) in evaluate(HIDDEN_PART, &input, 5, 1).iter().zip(&cases) {
         let there: f64 = points.iter().filter(|(p, _)| p < z).map(|(_, w)| w).sum();
         worst.see(f64::from(got[0]) - there, || format!("{points:?} at {z}: {got:?}, there is {there}"));
     }

@@ -15,6 +15,8 @@ pub(super) struct SoftMap {
     pub merged: Texture,
     /// `R32Float`, a layer an occluder map, a mip a level: what the level and all coarser ones hide.
     levels: Texture,
+    /// Each level of these.
+    level_views: Vec<wgpu::TextureView>,
     /// Where rectangles are blended, level by level.
     blended: Option<Texture>,
     format: Format,
@@ -32,9 +34,11 @@ impl SoftMap {
         });
         let format = wgpu::TextureFormat::R32Float;
         let readable = usage | wgpu::TextureUsages::COPY_SRC;
+        let soft = Texture::array(gpu, "soft shadow levels", side, layers, levels, format, usage);
         SoftMap {
             merged: Texture::new(gpu, "soft shadow map", [settings.map; 2], 1, format, readable),
-            levels: Texture::array(gpu, "soft shadow levels", side, layers, levels, format, usage),
+            level_views: (0..levels).map(|level| soft.array_mip(level)).collect(),
+            levels: soft,
             blended,
             format: settings.format,
         }
@@ -47,8 +51,7 @@ impl SoftMap {
         }
         self.soften(recorder, frame, maps, patches)?;
         let merge = recorder.gpu.compute_pipeline(&Patches::key("techniques::ssm::merge"), "merge")?;
-        let finest = self.levels.array_mip(0);
-        let set = bindings! { finest_soft: &finest, soft_shadow_map: &self.merged };
+        let set = bindings! { finest_soft: &self.level_views[0], soft_shadow_map: &self.merged };
         let size = patches.shape.size;
         recorder.compute("soft shadow map", &merge, set, Work::Threads([size, size, 1]));
         Ok(())
@@ -66,11 +69,11 @@ impl SoftMap {
                 let is_coarsest = level + 1 == patches.shape.levels;
                 let pipeline = if is_coarsest { &coarsest } else { &finer };
                 let step = patches.levels.at(2 * level);
-                let (own, coarser) =
-                    (self.levels.array_mip(level), (!is_coarsest).then(|| self.levels.array_mip(level + 1)));
+                let own = &self.level_views[level as usize];
+                let coarser = self.level_views.get(level as usize + 1);
                 let blended = self.blended.as_ref().map(|b| b.array_mip(level));
-                let mut set = [&common[..], bindings! { step: &step, level_soft: &own }].concat();
-                if let Some(view) = &coarser {
+                let mut set = [&common[..], bindings! { step: &step, level_soft: own }].concat();
+                if let Some(view) = coarser {
                     set.extend_from_slice(bindings! { coarser_soft: view });
                 }
                 if let Some(view) = &blended {

@@ -7,6 +7,10 @@ use crate::resource::storage_buffer;
 use crate::technique::Memory;
 use crate::{Casters, Error, Frame, Gpu};
 
+/// Labels of the two drawings.
+const RECEIVERS: &str = "receiver map";
+const OCCLUDERS: &str = "occluder maps";
+
 /// The receiver map and one or two occluder maps [Atty 2006, sections 3.2 and 3.5].
 ///
 /// The paper's second pass keeps the farthest back faces. Here it is the farthest surface that lies before the
@@ -41,21 +45,16 @@ impl Maps {
     pub fn record(&self, recorder: &mut Recorder, frame: &Frame) -> Result<(), Error> {
         let clip_from_world = frame.map_clip_from_world();
         let mut draw = |map: &DepthMap, drawing: &Drawing| map.draw(recorder, &frame.casters, clip_from_world, drawing);
-        draw(&self.receivers, &Drawing::of("receiver map", Surfaces::Receivers))?;
+        draw(&self.receivers, &Drawing::of(RECEIVERS, Surfaces::Receivers))?;
         let farthest = Farthest { before: &self.receivers, depths: &self.farthest };
-        let occluders = Drawing::of("occluder maps", Surfaces::Occluders);
+        let occluders = Drawing::of(OCCLUDERS, Surfaces::Occluders);
         draw(&self.nearest, &Drawing { farthest: (self.passes > 1).then_some(farthest), ..occluders })
     }
 
     /// GPU memory by pass.
     pub fn memory(&self) -> Vec<Memory> {
-        let labelled = |map: &DepthMap, label| map.memory().map(|m| relabelled(m, label));
-        let farthest = Memory::new("occluder maps", self.farthest.size());
-        let maps = [labelled(&self.receivers, "receiver map"), labelled(&self.nearest, "occluder maps")];
+        let farthest = Memory::new(OCCLUDERS, self.farthest.size());
+        let maps = [self.receivers.memory_of(RECEIVERS), self.nearest.memory_of(OCCLUDERS)];
         maps.into_iter().flatten().chain([farthest]).collect()
     }
-}
-
-fn relabelled(memory: Memory, label: &'static str) -> Memory {
-    if memory.pass == "depth map" { Memory::new(label, memory.bytes) } else { memory }
 }

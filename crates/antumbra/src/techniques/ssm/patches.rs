@@ -55,6 +55,8 @@ pub(super) struct Patches {
     uniform: wgpu::Buffer,
     /// Two a level: its layers.
     pub levels: UniformArray<SsmLevel>,
+    /// Each level of patches, of tiles' tops and of what rises.
+    level_views: Vec<[wgpu::TextureView; 3]>,
     receiver_bounds: Option<DepthPyramid>,
 }
 
@@ -75,10 +77,14 @@ impl Patches {
         let texture =
             |label, side, format| Texture::array(gpu, label, [side; 2], settings.passes, levels, format, usage);
         let of_level = |i| SsmLevel { level: i / 2, layer: i % 2 };
+        let patches = texture("micro-patches", padded, wgpu::TextureFormat::Rg32Float);
+        let tile_tops = texture("nearest patches", padded / TILE, wgpu::TextureFormat::R32Float);
+        let rising = texture("rising patches", padded, wgpu::TextureFormat::Rgba32Float);
         Patches {
-            patches: texture("micro-patches", padded, wgpu::TextureFormat::Rg32Float),
-            tile_tops: texture("nearest patches", padded / TILE, wgpu::TextureFormat::R32Float),
-            rising: texture("rising patches", padded, wgpu::TextureFormat::Rgba32Float),
+            level_views: (0..levels).map(|i| [&patches, &tile_tops, &rising].map(|t| t.array_mip(i))).collect(),
+            patches,
+            tile_tops,
+            rising,
             totals: storage_buffer(gpu, "patch totals", TOTALS),
             uniform: uniform(gpu, "soft shadow map", &shape),
             levels: UniformArray::new(gpu, "patch levels", &(0..2 * levels).map(of_level).collect::<Vec<_>>()),
@@ -112,8 +118,8 @@ impl Patches {
             for level in 0..shape.levels {
                 let pipeline = if level == 0 { &first } else { &next };
                 let step = self.levels.at(2 * level);
-                let views = [&self.patches, &self.tile_tops, &self.rising].map(|t| t.array_mip(level));
-                let below = self.rising.array_mip(level.saturating_sub(1));
+                let views = &self.level_views[level as usize];
+                let [_, _, below] = &self.level_views[level.saturating_sub(1) as usize];
                 let mut set = bindings! {
                     step: &step,
                     ssm: &self.uniform,
@@ -124,7 +130,7 @@ impl Patches {
                     level_patches: &views[0],
                     level_tops: &views[1],
                     level_rising: &views[2],
-                    rising: &below,
+                    rising: below,
                     frame: &frame.uniform,
                 }
                 .to_vec();
