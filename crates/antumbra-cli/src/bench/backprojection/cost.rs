@@ -1,6 +1,6 @@
 //! What milliseconds depend on.
 
-use super::super::kit::{Part, Run, Shown, Trial};
+use super::super::kit::{Part, Run, Shown, Trial, with_map};
 use super::error::{Lit, by_light};
 use super::specs::{BALANCED, PCSS, run_of};
 use crate::report::lines::{Curve, Guide, Lines, Spot};
@@ -10,11 +10,6 @@ use crate::report::text;
 pub const DRAWN: [(&str, &str); 2] = [("balanced", BALANCED), ("pcss", PCSS)];
 /// Maps of the curve over the size of the map, texels a side.
 pub const MAPS: [u32; 4] = [256, 512, 1024, 2048];
-
-/// A technique with a map of this size.
-pub fn with_map(spec: &str, map: u32) -> String {
-    format!("{spec}{}map={map}", if spec.contains(':') { ',' } else { ':' })
-}
 
 /// What the four curves are made of.
 pub struct Costs<'a> {

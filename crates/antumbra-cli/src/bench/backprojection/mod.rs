@@ -96,7 +96,7 @@ impl Plan {
                 jobs.push(Job { name, scene, size: half, specs: texts(&COMPARED)? });
             }
         }
-        let of_maps = cost::DRAWN.iter().flat_map(|(_, spec)| cost::MAPS.map(|map| cost::with_map(spec, map)));
+        let of_maps = cost::DRAWN.iter().flat_map(|(_, spec)| cost::MAPS.map(|map| kit::with_map(spec, map)));
         let specs = kit::specs(of_maps.collect())?;
         jobs.push(Job { name: "maps".into(), scene: builtin::build(PLAIN)?, size: half, specs });
         for side in SIDES {

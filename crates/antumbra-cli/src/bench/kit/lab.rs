@@ -33,6 +33,11 @@ pub fn specs(texts: Vec<String>) -> Result<Vec<Spec>, CliError> {
     Ok(texts.iter().map(|text| text.parse::<Spec>()).collect::<Result<_, _>>().map_err(Error::from)?)
 }
 
+/// A SPEC with a map of this size.
+pub fn with_map(spec: &str, map: u32) -> String {
+    format!("{spec}{}map={map}", if spec.contains(':') { ',' } else { ':' })
+}
+
 /// What to measure.
 pub struct Order<'a> {
     /// Name of the trial in the suite.

@@ -11,5 +11,5 @@ pub mod tests;
 
 pub use files::write;
 pub use findings::{Context, Findings, Group, Part, Ratio, Scatter, Shown, Table};
-pub use lab::{Lab, Order, Run, Trial, specs};
+pub use lab::{Lab, Order, Run, Trial, specs, with_map};
 pub use markdown::terminal;

@@ -1,7 +1,7 @@
 //! The whole family: error over the light's size and the map's, cost over the filter's width.
 
-use super::super::kit::{Group, Lab, Part, Run, Shown, Table, Trial, specs};
-use super::{Job, read, with_map, with_point_light};
+use super::super::kit::{Group, Lab, Part, Run, Shown, Table, Trial, specs, with_map};
+use super::{Job, read, with_point_light};
 use crate::error::CliError;
 use crate::report::lines::{Curve, Lines, Spot};
 use crate::report::text;

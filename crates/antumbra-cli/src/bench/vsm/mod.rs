@@ -69,11 +69,6 @@ fn read(texts: &[&str]) -> Result<Vec<Spec>, CliError> {
     specs(texts.iter().map(|text| (*text).to_owned()).collect())
 }
 
-/// A SPEC with a map of this size.
-fn with_map(spec: &str, map: u32) -> String {
-    format!("{spec}{}map={map}", if spec.contains(':') { ',' } else { ':' })
-}
-
 /// The scene with its light shrunk to a point.
 fn with_point_light(mut scene: Scene) -> Scene {
     scene.light.size = [0.0; 2].into();

@@ -1,7 +1,7 @@
 //! The two tables of section 5.2, as speeds over the plain shadow map.
 
-use super::super::kit::{Group, Lab, Part, Ratio, Run, Shown, Table, Trial, specs};
-use super::{Job, with_map, with_point_light};
+use super::super::kit::{Group, Lab, Part, Ratio, Run, Shown, Table, Trial, specs, with_map};
+use super::{Job, with_point_light};
 use crate::error::CliError;
 use crate::report::text;
 use antumbra_scene::builtin;
