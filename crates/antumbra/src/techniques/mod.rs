@@ -15,6 +15,7 @@ pub mod pcf;
 pub mod pcss;
 pub mod prefiltered;
 pub mod savsm;
+pub mod smooth_pcss;
 pub mod ssm;
 pub mod summed;
 pub mod uniform_sampling;
@@ -26,6 +27,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<hard::Hard>(),
     entry::<pcf::Pcf>(),
     entry::<pcss::Pcss>(),
+    entry::<smooth_pcss::SmoothPcss>(),
     entry::<ssm::Ssm>(),
     entry::<vsm::Vsm>(),
     entry::<evsm::Evsm>(),
