@@ -11,6 +11,7 @@ mod mask;
 mod moments;
 mod patches;
 mod penumbra;
+mod smooth_kernel;
 mod summed_area;
 
 use crate::recorder::Work;
