@@ -107,13 +107,14 @@ fn coverages_sum_to_the_windows_area_down_to_a_hundredth_of_a_texel() {
     for (given, found) in input.chunks_exact(6).zip(evaluate(SUM, &input, 6, 3)) {
         let area = 4.0 * f64::from(given[0]) * f64::from(given[2]);
         let error = (f64::from(found[0]) - area).abs().max((f64::from(found[1]) - area).abs()) / area;
-        // Edges are rounded as places of the window are, to 2^-24 of the distance from its middle; 1 in 4 e6 beside that.
+        // Edges are rounded as places of the window are, to 2^-24 of the distance from its middle.
         let reach = f64::from(given[0].max(given[1].abs() + given[2]) + given[5]);
         let allowed = 1.0 + reach / f64::from(given[0].min(given[2]));
         worst.see(error / allowed, || format!("{given:?} gave {found:?}, area {area}"));
         assert!(found[2] >= 0.0, "a negative coverage: {given:?} gave {found:?}");
     }
-    assert!(worst.error < 2.5e-7, "{worst:?}");
+    // Some thousand areas are added one by one.
+    assert!(worst.error < 2e-6, "{worst:?}");
 }
 
 #[test]
