@@ -127,7 +127,7 @@ pub struct StudyArgs {
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
     /// What a viewer does not notice: FLIP, mean over the penumbra
-    #[arg(long, value_name = "FLIP", default_value_t = 0.02)]
+    #[arg(long, value_name = "FLIP", default_value_t = 0.02, value_parser = flip)]
     pub threshold: f64,
     /// Widest penumbra, pixels
     #[arg(long, value_name = "N", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=512))]
@@ -251,6 +251,12 @@ impl FromStr for LightSize {
         let size = edge(width).zip(edge(height)).map(|(w, h)| LightSize([w, h]));
         size.ok_or_else(|| "expected one or two lengths in metres from 0 to 1000000, such as 0.5 or 1x0.25".to_owned())
     }
+}
+
+/// A difference that can be noticed.
+fn flip(text: &str) -> Result<f64, String> {
+    let expected = || "expected a number above 0 and up to 1".to_owned();
+    text.parse().ok().filter(|flip| *flip > 0.0 && *flip <= 1.0).ok_or_else(expected)
 }
 
 #[cfg(test)]

@@ -27,7 +27,7 @@ pub struct Disk {
 impl Disk {
     /// A picture that is wide enough for the penumbra.
     pub fn of_penumbra(penumbra: u32) -> Disk {
-        Disk { penumbra: penumbra as f32, side: (2 * penumbra).max(256) }
+        Disk { penumbra: penumbra as f32, side: (2 * penumbra).max(128) }
     }
 
     /// Radius of the shadow of the light's centre, in pixels.

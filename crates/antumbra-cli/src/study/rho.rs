@@ -96,7 +96,7 @@ fn plot(answers: &[Answer]) -> Part {
     }
     Part {
         title: "Texels over pixels".to_owned(),
-        text: "The smallest map whose shadow of a disk cannot be told from that of a map eight times as fine as a pixel (four times for the widest), by halving \
+        text: "The smallest map whose shadow of a disk cannot be told from that of a map with four texels a pixel, by halving \
                the range of 1 to twice as many texels as pixels. Still: the mean FLIP over the penumbra of three pictures. \
                Moving: the most that any of four frames shows, or that changes from one to the next otherwise than with \
                the fine map."

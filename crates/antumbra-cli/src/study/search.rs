@@ -24,7 +24,7 @@ const FRAMES: usize = 4;
 /// How far the shadow moves in a frame of the film: pixels, and the filter's width.
 const STEP: (f32, f32) = (0.3, 0.03);
 /// The finest map that the others are held against: texels a pixel of the picture's side, and texels a side at most.
-const FINE: (u32, u32) = (16, 8192);
+const FINE: (u32, u32) = (8, 8192);
 /// Maps smaller than this are not made.
 const SMALLEST: u32 = 16;
 
