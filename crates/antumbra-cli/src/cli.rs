@@ -2,7 +2,6 @@
 
 use crate::bench::{self, Suite};
 use crate::output::{ValuesFile, npy_path, png_path};
-use crate::study::{self, Study};
 use antumbra::{AdapterChoice, Spec, techniques::TECHNIQUES};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -29,9 +28,6 @@ pub enum Command {
     /// Measure the tables and curves of papers anew, theirs beside ours
     #[command(after_help = bench::list())]
     Bench(BenchArgs),
-    /// Find out what a paper found by asking people, by a metric of what people see
-    #[command(after_help = study::list())]
-    Study(StudyArgs),
     /// List the techniques, their settings and where they come from
     Techniques(ListArgs),
     /// List the built-in scenes and their parameters
@@ -113,25 +109,6 @@ pub struct BenchArgs {
     pub size: Option<Size>,
     #[command(flatten)]
     pub truth: TruthArgs,
-    #[command(flatten)]
-    pub gpu: GpuArgs,
-}
-
-/// `antumbra study`.
-#[derive(Debug, Args)]
-pub struct StudyArgs {
-    /// What to study, listed below
-    #[arg(value_name = "STUDY", value_parser = study::find)]
-    pub study: &'static Study,
-    /// Folder of the results, made if need be: a page, a table in Markdown, JSON and CSV
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
-    /// What a viewer does not notice: FLIP, mean over the penumbra
-    #[arg(long, value_name = "FLIP", default_value_t = 0.02, value_parser = flip)]
-    pub threshold: f64,
-    /// Widest penumbra, pixels
-    #[arg(long, value_name = "N", default_value_t = 512, value_parser = clap::value_parser!(u32).range(1..=512))]
-    pub largest: u32,
     #[command(flatten)]
     pub gpu: GpuArgs,
 }
@@ -251,12 +228,6 @@ impl FromStr for LightSize {
         let size = edge(width).zip(edge(height)).map(|(w, h)| LightSize([w, h]));
         size.ok_or_else(|| "expected one or two lengths in metres from 0 to 1000000, such as 0.5 or 1x0.25".to_owned())
     }
-}
-
-/// A difference that can be noticed.
-fn flip(text: &str) -> Result<f64, String> {
-    let expected = || "expected a number above 0 and up to 1".to_owned();
-    text.parse().ok().filter(|flip| *flip > 0.0 && *flip <= 1.0).ok_or_else(expected)
 }
 
 #[cfg(test)]

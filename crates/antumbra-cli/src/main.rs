@@ -10,7 +10,6 @@ mod output;
 mod progress;
 mod report;
 mod setup;
-mod study;
 mod table;
 mod truth;
 mod warnings;

@@ -5,7 +5,6 @@ mod compare;
 mod list;
 mod reference;
 mod render;
-mod study;
 
 use crate::cli::Command;
 use crate::error::CliError;
@@ -18,7 +17,6 @@ pub fn run(command: &Command) -> Result<(), CliError> {
         Command::Reference(args) => reference::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
-        Command::Study(args) => study::run(args),
         Command::Techniques(args) => list::techniques(args.json),
         Command::Scenes(args) => list::scenes(args.json),
         Command::Adapters(args) => list::adapters(args.json),
