@@ -12,6 +12,8 @@ pub(crate) mod filtering;
 pub(crate) mod plan;
 pub mod rho;
 pub mod settings;
+#[cfg(test)]
+mod tests;
 
 pub use settings::{Decision, PvssmSettings, Rho};
 

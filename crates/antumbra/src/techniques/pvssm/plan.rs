@@ -96,7 +96,7 @@ impl Decided {
     }
 
     /// For each cell its tile's number plus one, 0 where there is none.
-    fn cells(&self, grid: u32) -> Vec<u32> {
+    pub fn cells(&self, grid: u32) -> Vec<u32> {
         let mut cells = vec![0; (grid * grid) as usize];
         for (i, tile) in self.tiles.iter().enumerate() {
             let [x, y, width, height] = tile.cells.to_array();
@@ -248,6 +248,30 @@ impl Plan {
     pub async fn read(&self, gpu: &Gpu) -> Result<Decided, Error> {
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.tiles).await?);
         Ok(Decided::of_words(&words))
+    }
+
+    /// Puts a pyramid in the place of what kernels have noted.
+    #[cfg(test)]
+    pub fn write_grid(&self, gpu: &Gpu, noted: &[f32]) {
+        gpu.queue.write_buffer(&self.grid, 0, bytemuck::cast_slice(noted));
+    }
+
+    /// The tile of each cell, as decided last.
+    #[cfg(test)]
+    pub async fn read_cells(&self, gpu: &Gpu) -> Result<Vec<u32>, Error> {
+        Ok(bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.cells).await?))
+    }
+
+    /// The indirect arguments, as decided last.
+    #[cfg(test)]
+    pub async fn read_arguments(&self, gpu: &Gpu) -> Result<Vec<u32>, Error> {
+        Ok(bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.arguments).await?))
+    }
+
+    /// The indirect arguments of a plan.
+    #[cfg(test)]
+    pub fn arguments_of(&self, decided: &Decided) -> Vec<u32> {
+        decided.arguments(self.rounds, &self.batches)
     }
 
     /// Where the arguments of the draw that wipes a round's tiles begin, in bytes.
