@@ -8,9 +8,11 @@ use glam::{UVec2, Vec2};
 use pollster::block_on;
 
 /// A grid in which a few places ask for much, a region for little, and the rest for nothing.
-fn random_grid(random: &mut Random, side: u32) -> Vec<Vec2> {
+fn random_grid(random: &mut Random, settings: &PvssmSettings) -> Vec<Vec2> {
+    let side = settings.grid;
     let mut cells = vec![Vec2::ZERO; (side * side) as usize];
-    let most = 10f32.powf(random.within(1.5, 5.0));
+    // No pixel notes more than a tile a cell.
+    let most = 10f32.powf(random.within(1.5, 5.0)).min((side * settings.tile) as f32);
     let mut fill = |low: UVec2, size: UVec2, value: Vec2| {
         let high = (low + size).min(UVec2::splat(side));
         for y in low.y..high.y {
@@ -78,7 +80,7 @@ fn every_plan_covers_what_is_asked_for_and_fits_the_pool() {
     let (mut tiles, mut coarser) = (0, 0);
     for _ in 0..300 {
         let settings = settings(&mut random);
-        let cells = random_grid(&mut random, settings.grid);
+        let cells = random_grid(&mut random, &settings);
         let decided = decide(&Grid::of_cells(settings.grid, cells.clone()), &settings);
         check(&decided, &cells, &settings);
         tiles += decided.tiles.len();
@@ -118,7 +120,7 @@ fn the_gpu_decides_as_the_cpu_does() {
     let mut random = Random(82);
     for round in 0..40 {
         let settings = settings(&mut random);
-        let cells = random_grid(&mut random, settings.grid);
+        let cells = random_grid(&mut random, &settings);
         let mut slot = None;
         let plan = Plan::ensure(&mut slot, gpu(), &renderer.frame.casters, &settings);
         // Some of the wishes are noted at a coarser level.
