@@ -17,6 +17,16 @@ pub struct PenumbraList {
     size: [u32; 2],
 }
 
+/// Which pixels are listed besides those in penumbra.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Listing {
+    /// What the light's centre sees nothing of may be lit from its rim, through a gap that the centre does not see: only
+    /// techniques that look from nowhere else trust the map that it is dark; others get such pixels listed.
+    pub trust_dark: bool,
+    /// For techniques that filter over the pixel's footprint on the map: what falls into it counts too.
+    pub footprints: bool,
+}
+
 impl PenumbraList {
     /// Room for every pixel.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> PenumbraList {
@@ -43,18 +53,19 @@ impl PenumbraList {
     }
 
     /// Writes the visibility of known pixels and lists the others, whose visibility is -1 until the technique writes it.
-    /// What the light's centre sees nothing of may be lit from its rim, through a gap that the centre does not see: only
-    /// techniques that look from nowhere else `trust_dark`; others get such pixels listed. What is lit by the map surely
-    /// is.
+    /// What is lit by the map surely is.
     pub fn record(
         &self,
         recorder: &mut Recorder,
         frame: &Frame,
         map: &DepthMap,
         pyramid: &DepthPyramid,
-        trust_dark: bool,
+        listing: Listing,
     ) -> Result<(), Error> {
-        let key = ShaderKey::new("passes::classify").feature("trust_dark", trust_dark).with::<FrameUniform>();
+        let key = ShaderKey::new("passes::classify")
+            .feature("trust_dark", listing.trust_dark)
+            .feature("footprints", listing.footprints)
+            .with::<FrameUniform>();
         let classify = recorder.gpu.compute_pipeline(&key, "classify_pixels")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
         for counted in [&self.buffer, &self.tiles] {

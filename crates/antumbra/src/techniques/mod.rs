@@ -17,6 +17,7 @@ pub mod pcss;
 pub mod prefiltered;
 pub mod pvssm;
 pub mod savsm;
+pub mod smooth_pcss;
 pub mod ssm;
 pub mod summed;
 pub mod uniform_sampling;
@@ -28,6 +29,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<hard::Hard>(),
     entry::<pcf::Pcf>(),
     entry::<pcss::Pcss>(),
+    entry::<smooth_pcss::SmoothPcss>(),
     entry::<ssm::Ssm>(),
     entry::<vsm::Vsm>(),
     entry::<evsm::Evsm>(),

@@ -10,7 +10,11 @@ pub use settings::{AdaptiveSamplingSettings, Criterion, Filter, Space};
 
 use crate::frame::FrameUniform;
 use crate::passes::light_maps::{Drawn, Entry, LightMaps, LightSample, LightSamples, MapSlot, MapStage};
-use crate::passes::{classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid};
+use crate::passes::{
+    classify::{Listing, PenumbraList},
+    depth_map::DepthMap,
+    depth_pyramid::DepthPyramid,
+};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::Recorder;
 use crate::shader::ShaderKey;
@@ -53,7 +57,7 @@ impl Penumbra {
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, recorder.gpu, size);
         let list = PenumbraList::ensure(&mut self.list, recorder.gpu, frame.geometry.size);
         pyramid.record(recorder, map, frame.frustum.near)?;
-        list.record(recorder, frame, map, pyramid, false)?;
+        list.record(recorder, frame, map, pyramid, Listing::default())?;
         Ok(list)
     }
 

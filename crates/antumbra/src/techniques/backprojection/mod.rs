@@ -3,7 +3,10 @@
 
 use crate::frame::FrameUniform;
 use crate::passes::{
-    classify::PenumbraList, depth_layers::DepthLayers, depth_pyramid::DepthPyramid, patch_pyramid::PatchPyramid,
+    classify::{Listing, PenumbraList},
+    depth_layers::DepthLayers,
+    depth_pyramid::DepthPyramid,
+    patch_pyramid::PatchPyramid,
     sparse::SparsePixels,
 };
 use crate::pipeline::{Binding, ComputePipeline};
@@ -114,7 +117,7 @@ impl Technique for Backprojection {
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
         patches.record(recorder, maps, frame.frustum.near, maps.gap(frame, self.settings.apart))?;
         pyramid.record(recorder, map, frame.frustum.near)?;
-        list.record(recorder, frame, map, pyramid, false)?;
+        list.record(recorder, frame, map, pyramid, Listing::default())?;
         let look = |recorder: &mut Recorder, list: &PenumbraList, sharpness: &[Binding]| {
             let set = bindings! {
                 depth_map: &map.texture,

@@ -2,7 +2,11 @@
 //! similar triangles, filter with that width. No constant but the light's size in metres.
 
 use crate::frame::FrameUniform;
-use crate::passes::{classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid};
+use crate::passes::{
+    classify::{Listing, PenumbraList},
+    depth_map::DepthMap,
+    depth_pyramid::DepthPyramid,
+};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
@@ -12,7 +16,7 @@ use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
 use std::sync::Arc;
 
 crate::settings! {
-    /// Settings of [`Pcss`].
+    /// Settings of [`Pcss`] and of [`SmoothPcss`](super::smooth_pcss::SmoothPcss).
     pub struct PcssSettings {
         /// Shadow map, texels a side.
         map: u32 = 2048, Kind::Integer { min: 16, max: 16384 };
@@ -33,6 +37,7 @@ gpu_struct! {
 
 /// Shadow of a rectangular light whose penumbra widens with the distance from the occluder.
 pub struct Pcss {
+    antialias: bool,
     settings: PcssSettings,
     soften: Arc<ComputePipeline>,
     uniform: wgpu::Buffer,
@@ -51,9 +56,20 @@ impl Describe for Pcss {
     };
 
     fn make(gpu: &Gpu, settings: PcssSettings) -> Result<Self, Error> {
-        let key = ShaderKey::new("techniques::pcss::soften").with::<FrameUniform>().with::<PcssUniform>();
+        Pcss::with_antialias(gpu, settings, false)
+    }
+}
+
+impl Pcss {
+    /// Filters over the pixel's footprint too if `antialias`.
+    pub(super) fn with_antialias(gpu: &Gpu, settings: PcssSettings, antialias: bool) -> Result<Self, Error> {
+        let key = ShaderKey::new("techniques::pcss::soften")
+            .feature("antialias", antialias)
+            .with::<FrameUniform>()
+            .with::<PcssUniform>();
         let value = PcssUniform { search: settings.search as f32, filter_width: settings.filter as f32 };
         Ok(Pcss {
+            antialias,
             soften: gpu.compute_pipeline(&key, "soften")?,
             uniform: uniform(gpu, "pcss", &value),
             settings,
@@ -71,7 +87,7 @@ impl Technique for Pcss {
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
         pyramid.record(recorder, map, frame.frustum.near)?;
-        list.record(recorder, frame, map, pyramid, true)?;
+        list.record(recorder, frame, map, pyramid, Listing { trust_dark: true, footprints: self.antialias })?;
         let set = frame.bindings(bindings! {
             depth_map: &map.texture,
             pyramid_bounds: &pyramid.bounds,

@@ -3,7 +3,7 @@
 //! the visible part is read from means, in a module `soft.wesl`; the penumbra follows from the light's size alone.
 
 use crate::frame::FrameUniform;
-use crate::passes::classify::PenumbraList;
+use crate::passes::classify::{Listing, PenumbraList};
 use crate::passes::depth_pyramid::DepthPyramid;
 use crate::passes::light_depth::LightDepth;
 use crate::passes::moments::{DepthWarp, Nearest};
@@ -107,7 +107,7 @@ impl<S: Soft> Technique for Summed<S> {
         gpu.queue.write_buffer(&self.warp, 0, &self.plan.warp.over(frame, Nearest::Caster).uniform_bytes());
         depth.record(recorder, frame)?;
         pyramid.record(recorder, map, frame.frustum.near)?;
-        list.record(recorder, frame, map, pyramid, true)?;
+        list.record(recorder, frame, map, pyramid, Listing { trust_dark: true, ..Listing::default() })?;
         table.record(recorder, depth, S::WARP, &self.warp)?;
         let set = frame.bindings(bindings! {
             depth_map: &map.texture,
