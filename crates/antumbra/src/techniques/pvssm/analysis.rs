@@ -4,7 +4,11 @@
 use super::plan::Plan;
 use super::{PvssmSettings, PvssmUniform};
 use crate::frame::FrameUniform;
-use crate::passes::{classify::PenumbraList, depth_map::DepthMap, depth_pyramid::DepthPyramid};
+use crate::passes::{
+    classify::{Listing, PenumbraList},
+    depth_map::DepthMap,
+    depth_pyramid::DepthPyramid,
+};
 use crate::recorder::{Recorder, Work};
 use crate::resource::storage_buffer;
 use crate::shader::ShaderKey;
@@ -15,8 +19,8 @@ use crate::{Error, Frame, Gpu, bindings};
 const MAP: &str = "low-resolution map";
 /// Label of the pass that makes the kernel shape buffer.
 const KERNELS: &str = "kernel shapes";
-/// Bytes of a kernel: `Kernel` in `kernel.wesl`.
-const KERNEL_BYTES: u64 = 32;
+/// Bytes of a kernel; see `kernel.wesl`.
+const KERNEL_BYTES: u64 = 16;
 
 /// The low-resolution map and what follows from it.
 pub(crate) struct Analysis {
@@ -58,7 +62,8 @@ impl Analysis {
     /// Lists the pixels that may lie in penumbra. The map shows casters larger than they are, so that what is lit by it
     /// surely is, and nothing is surely dark.
     pub fn list_pixels(&self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
-        self.list.record(recorder, frame, &self.map, &self.pyramid, false)
+        let listing = Listing { trust_dark: false, footprints: true };
+        self.list.record(recorder, frame, &self.map, &self.pyramid, listing)
     }
 
     /// Finds the kernel of each listed pixel; what has no occluder is lit and has none.

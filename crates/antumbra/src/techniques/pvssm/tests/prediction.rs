@@ -14,15 +14,17 @@ use glam::{DMat2, DVec2};
 use pollster::block_on;
 
 const KERNEL: &str = "
-    import package::shaders::footprint::Footprint;
-    import package::techniques::pvssm::kernel::convolve;
+    import package::shaders::smooth_kernel::{spread, kernel_of};
     import package::techniques::pvssm::rho::{rho, size_in_pixels};
     @group(0) @binding(30) var<storage, read> input: array<vec4<f32>>;
     @group(0) @binding(31) var<storage, read_write> output: array<vec4<f32>>;
     @compute @workgroup_size(64) fn each(@builtin(global_invocation_id) id: vec3<u32>) {
         if id.x < arrayLength(&output) {
-            let f = Footprint(input[2u * id.x].xy, input[2u * id.x].zw);
-            let n = size_in_pixels(convolve(f, input[2u * id.x + 1u].xy), f);
+            let u = 0.5 * input[2u * id.x].xy;
+            let v = 0.5 * input[2u * id.x].zw;
+            let light = input[2u * id.x + 1u].xy;
+            let k = kernel_of(spread(u, v) + spread(vec2(light.x, 0.0), vec2(0.0, light.y)));
+            let n = size_in_pixels(k, u, v);
             output[id.x] = vec4(n, rho(n.x), rho(n.y));
         }
     }";
