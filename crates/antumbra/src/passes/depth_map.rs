@@ -129,7 +129,7 @@ impl DepthMap {
     }
 
     /// Draws the casters that the light's centre sees, each to every texel that it touches: what no texel of a window
-    /// shows is not in that window. Holes of masked materials are closed.
+    /// shows is not in that window. Holes of masked materials that are smaller than a texel may be closed.
     pub(crate) fn record_touched(&self, recorder: &mut Recorder, frame: &Frame, label: &str) -> Result<(), Error> {
         let drawing = Drawing { touched: true, ..Drawing::of(label, Surfaces::Casters) };
         self.draw(recorder, &frame.casters, frame.map_clip_from_world(), &drawing)
@@ -149,15 +149,14 @@ impl DepthMap {
         let depth = Some(drawing.kept);
         let native = drawing.touched && recorder.gpu.capabilities.conservative_rasterization;
         let target = RenderTarget { depth, samples: self.samples, conservative: native, ..RenderTarget::default() };
-        let [opaque, masked] = match drawing.touched {
-            true => ["passes::conservative_map"; 2].map(|m| Self::key(m).feature("native", native)),
-            false => [false, true].map(|masked| {
-                let key = Self::key("passes::depth_map").feature("layers", drawing.layers.is_some());
-                key.feature("farthest", drawing.farthest.is_some()).feature("masked", masked)
-            }),
+        let key = match drawing.touched {
+            true => Self::key("passes::conservative_map").feature("native", native),
+            false => Self::key("passes::depth_map")
+                .feature("layers", drawing.layers.is_some())
+                .feature("farthest", drawing.farthest.is_some()),
         };
-        let opaque = recorder.gpu.render_pipeline(&opaque, &target)?;
-        let masked = recorder.gpu.render_pipeline(&masked, &target)?;
+        let opaque = recorder.gpu.render_pipeline(&key, &target)?;
+        let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
         let set = bindings! { map_view: &self.view, visible: &self.culling.visible, conservative: &self.texel };
         let mut set = [set, drawing.layers.unwrap_or_default()].concat();
         if let Some(Farthest { before, depths }) = drawing.farthest {

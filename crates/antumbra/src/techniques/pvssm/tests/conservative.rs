@@ -87,10 +87,10 @@ fn no_texel_that_a_caster_touches_is_missed_and_none_far_from_all_is_drawn() {
             if near.iter().any(|s| *s < -1e-3) {
                 touched += 1;
                 plain_missed += usize::from(plain[texel as usize] == 0.0);
-                // As near as the farthest corner of the nearest triangle, but for what its plane gains in half a texel.
+                // As near as the farthest corner of the nearest triangle, but for two hundredths.
                 let nearest = all.iter().zip(&near).filter(|(_, s)| **s < -1e-3);
                 let least = nearest.map(|((_, depths), _)| depths.min_element()).fold(0.0, f64::max);
-                if depth < 0.9 * least * (1.0 - 1e-5) {
+                if depth < 0.98 * least * (1.0 - 1e-5) {
                     missed.push(format!("{place}: {depth} where {least} is touched"));
                 }
             } else if depth > 0.0 && near.iter().all(|s| *s > 2e-2) {
