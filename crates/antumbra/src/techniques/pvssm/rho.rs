@@ -18,6 +18,7 @@ pub fn coefficients(settings: &PvssmSettings) -> Cubic {
     match settings.rho {
         Rho::Dynamic | Rho::Fitted => DYNAMIC,
         Rho::Static => STATIC,
+        Rho::Own => [settings.c0, settings.c1, settings.c2, settings.c3],
         Rho::Linear => [DYNAMIC[0], settings.slope, 0.0, 0.0],
     }
 }

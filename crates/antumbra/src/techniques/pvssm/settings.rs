@@ -1,5 +1,6 @@
 //! Settings of the virtual soft shadow maps.
 
+use super::rho;
 use crate::settings::Kind;
 
 crate::choices! {
@@ -13,6 +14,8 @@ crate::choices! {
         Linear = "linear",
         /// A texel a pixel [Giegl and Wimmer 2007].
         Fitted = "fitted",
+        /// The polynomial of `c0` to `c3`: what `antumbra study rho` has found.
+        Own = "own",
     }
 }
 
@@ -41,6 +44,14 @@ crate::settings! {
         rho: Rho = Rho::Dynamic, Kind::Choice { options: Rho::OPTIONS };
         /// Texels more for a kernel twice as wide, where `rho=linear`.
         slope: f32 = 2.0, Kind::Number { min: 0.1, max: 64.0 };
+        /// Where `rho=own`: texels at one pixel.
+        c0: f32 = rho::DYNAMIC[0], Kind::Number { min: -64.0, max: 64.0 };
+        /// Where `rho=own`: coefficient of the logarithm to base 2 of the kernel's size in pixels.
+        c1: f32 = rho::DYNAMIC[1], Kind::Number { min: -64.0, max: 64.0 };
+        /// Where `rho=own`: coefficient of its square.
+        c2: f32 = rho::DYNAMIC[2], Kind::Number { min: -64.0, max: 64.0 };
+        /// Where `rho=own`: coefficient of its cube.
+        c3: f32 = rho::DYNAMIC[3], Kind::Number { min: -64.0, max: 64.0 };
         /// Times as many texels as predicted: quality against speed.
         detail: f32 = 1.0, Kind::Number { min: 0.1, max: 16.0 };
         /// Widest blocker search, in nodes of the depth pyramid a side.
