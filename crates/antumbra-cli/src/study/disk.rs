@@ -128,6 +128,6 @@ mod tests {
         let reference = disk.reference();
         let errors = [1.5, 4.0, 12.0, 48.0].map(|rho| disk.picture(rho, [0.3, 0.7]).flip(&reference));
         assert!(errors.windows(2).all(|e| e[1] < e[0]), "{errors:?}");
-        assert!(errors[3] < 0.01, "{errors:?}");
+        assert!(errors[3] < 0.03, "{errors:?}");
     }
 }

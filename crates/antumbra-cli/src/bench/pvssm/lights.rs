@@ -30,10 +30,15 @@ const ROWS: [Row; 6] = [
     Row { name: "64 hard maps", paper: Some(([0.60, 0.61], 64.0)) },
 ];
 
+/// The technique with maps of the paper's sizes; tiles of half of the paper's side, which is a quarter of its memory.
+fn adaptive(scale: Scale) -> String {
+    format!("pvssm:map={},tile={}", scale.map(1024), scale.map(2048))
+}
+
 fn specs(scale: Scale) -> [String; 6] {
     let map = scale.map(4096);
     [
-        "pvssm".to_owned(),
+        adaptive(scale),
         format!("smooth-pcss:map={map}"),
         // As many nodes as texels fit the window: the pyramid is not used.
         format!("smooth-pcss:map={map},search=128,filter=128"),

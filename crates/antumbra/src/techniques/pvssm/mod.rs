@@ -25,7 +25,7 @@ use crate::{Error, Frame, Gpu, gpu_struct};
 use analysis::Analysis;
 use drawing::Drawing;
 use filtering::Filtering;
-use glam::Vec4;
+use glam::{UVec2, Vec2, Vec4};
 use plan::Plan;
 
 gpu_struct! {
@@ -68,6 +68,19 @@ impl PvssmUniform {
     }
 }
 
+/// A tile of the last frame, for reports and viewers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TileView {
+    /// Low corner in the map's window, from 0 to 1 along x and y.
+    pub low: Vec2,
+    /// Size in the map's window.
+    pub size: Vec2,
+    /// Texels along x and y.
+    pub texels: UVec2,
+    /// Which filling of the pool it belongs to.
+    pub round: u32,
+}
+
 /// Soft shadows of any sharpness on scenes of any size.
 pub struct Pvssm {
     settings: PvssmSettings,
@@ -106,6 +119,19 @@ impl Pvssm {
         }
         gpu.check_size("pool of tiles", settings.tile, settings.tile)?;
         Ok(Pvssm { settings, analysis: None, plan: None, drawing: None, filtering: None, drawn: None })
+    }
+
+    /// The tiles of the last frame. Waits for the GPU.
+    pub async fn tiles(&self, gpu: &Gpu) -> Result<Vec<TileView>, Error> {
+        let Some(plan) = &self.plan else { return Ok(Vec::new()) };
+        let part = 1.0 / self.settings.grid as f32;
+        let view = |tile: &plan::Tile| TileView {
+            low: UVec2::new(tile.cells.x, tile.cells.y).as_vec2() * part,
+            size: UVec2::new(tile.cells.z, tile.cells.w).as_vec2() * part,
+            texels: tile.texels,
+            round: tile.round,
+        };
+        Ok(plan.read(gpu).await?.tiles.iter().map(view).collect())
     }
 }
 

@@ -39,7 +39,7 @@ crate::settings! {
         /// Cells of the tile grid a side: 16, 32, 64 or 128.
         grid: u32 = 64, Kind::Integer { min: 16, max: 128 };
         /// How often the pool may be filled in a frame; all tiles are made coarser where that is not enough.
-        rounds: u32 = 8, Kind::Integer { min: 1, max: 16 };
+        rounds: u32 = 16, Kind::Integer { min: 1, max: 16 };
         /// Texels that a kernel needs over its size in pixels.
         rho: Rho = Rho::Dynamic, Kind::Choice { options: Rho::OPTIONS };
         /// Texels more for a kernel twice as wide, where `rho=linear`.
@@ -52,8 +52,8 @@ crate::settings! {
         c2: f32 = rho::DYNAMIC[2], Kind::Number { min: -64.0, max: 64.0 };
         /// Where `rho=own`: coefficient of its cube.
         c3: f32 = rho::DYNAMIC[3], Kind::Number { min: -64.0, max: 64.0 };
-        /// Times as many texels as predicted: quality against speed.
-        detail: f32 = 1.0, Kind::Number { min: 0.1, max: 16.0 };
+        /// Times as many texels as predicted, along each axis: quality against speed. 1 is what people could not tell from more.
+        detail: f32 = 1.5, Kind::Number { min: 0.1, max: 16.0 };
         /// Widest blocker search, in nodes of the depth pyramid a side.
         search: u32 = 16, Kind::Integer { min: 2, max: 256 };
         /// Whether a tile is split where its halves need far fewer texels together, not only where it is too large.
