@@ -2,6 +2,7 @@
 
 use crate::bench::{self, Suite};
 use crate::output::{ValuesFile, npy_path, png_path};
+use crate::study::rho;
 use antumbra::{AdapterChoice, Spec, techniques::TECHNIQUES};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -28,6 +29,9 @@ pub enum Command {
     /// Measure the tables and curves of papers anew, theirs beside ours
     #[command(after_help = bench::list())]
     Bench(BenchArgs),
+    /// Put a question that a paper has put to people to an image metric
+    #[command(subcommand)]
+    Study(Study),
     /// List the techniques, their settings and where they come from
     Techniques(ListArgs),
     /// List the built-in scenes and their parameters
@@ -111,6 +115,32 @@ pub struct BenchArgs {
     pub truth: TruthArgs,
     #[command(flatten)]
     pub gpu: GpuArgs,
+}
+
+/// `antumbra study`.
+#[derive(Debug, Subcommand)]
+pub enum Study {
+    /// How many texels a penumbra of so many pixels needs, for `pvssm` [Shen 2011, figure 9]
+    Rho(RhoArgs),
+}
+
+/// `antumbra study rho`.
+#[derive(Debug, Args)]
+pub struct RhoArgs {
+    /// Folder of the results, made if need be: a page, a table in Markdown, JSON and CSV
+    #[arg(short, long, value_name = "DIR")]
+    pub output: PathBuf,
+    /// Mean FLIP error in the penumbra that is still as good as the reference
+    #[arg(long, value_name = "FLIP", default_value_t = rho::THRESHOLD, value_parser = threshold)]
+    pub threshold: f64,
+    /// Widest penumbra in pixels; powers of two up to it are searched
+    #[arg(long, value_name = "N", default_value_t = 512, value_parser = clap::value_parser!(u32).range(8..=512))]
+    pub most: u32,
+}
+
+fn threshold(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok().filter(|v| (1e-4..=0.5).contains(v));
+    value.ok_or_else(|| "expected a FLIP error from 0.0001 to 0.5".to_owned())
 }
 
 /// `antumbra techniques`, `scenes` and `adapters`.

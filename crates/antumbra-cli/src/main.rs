@@ -10,6 +10,7 @@ mod output;
 mod progress;
 mod report;
 mod setup;
+mod study;
 mod table;
 mod truth;
 mod warnings;

@@ -115,12 +115,7 @@ impl Frame {
         light: RectLight,
     ) -> Result<Frame, Error> {
         gpu.check_size("picture", geometry.size[0], geometry.size[1])?;
-        let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("frame"),
-            size: <FrameUniform as encase::ShaderType>::min_size().get(),
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
+        let uniform = Frame::uniform_buffer(gpu);
         let frustum = ShadowFrustum::around(&light, &casters.bounds());
         let frame = Frame { view, light, frustum, casters, casters_rest: false, geometry, visibility, uniform };
         frame.write(gpu);
@@ -142,6 +137,15 @@ impl Frame {
             visibility: &self.visibility,
         };
         [&frame[..], more].concat()
+    }
+
+    fn uniform_buffer(gpu: &Gpu) -> wgpu::Buffer {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: <FrameUniform as encase::ShaderType>::min_size().get(),
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
     }
 
     fn write(&self, gpu: &Gpu) {
@@ -180,6 +184,26 @@ impl Frame {
             DVec4::new(0.0, 0.0, f64::from(f.near), 0.0),
         );
         (clip_from_light * light_from_world(&self.light)).as_mat4()
+    }
+}
+
+/// A frame whose light is a point at the light's centre: for techniques of hard shadows that share the code of soft ones.
+pub(crate) struct PointFrame(Frame);
+
+impl PointFrame {
+    /// The frame, with what is in `slot` used again.
+    pub fn of<'a>(slot: &'a mut Option<PointFrame>, gpu: &Gpu, frame: &Frame) -> &'a Frame {
+        let uniform = slot.take().map(|point| point.0.uniform).unwrap_or_else(|| Frame::uniform_buffer(gpu));
+        let point = Frame {
+            light: RectLight { size: Vec2::ZERO, ..frame.light },
+            casters: frame.casters.clone(),
+            geometry: frame.geometry.clone(),
+            visibility: frame.visibility.clone(),
+            uniform,
+            ..*frame
+        };
+        point.write(gpu);
+        &slot.insert(PointFrame(point)).0
     }
 }
 

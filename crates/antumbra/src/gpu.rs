@@ -32,6 +32,8 @@ pub struct Capabilities {
     pub float32_blending: bool,
     /// Rasterisation of every touched pixel. Without it triangles are enlarged in the vertex shader.
     pub conservative_rasterization: bool,
+    /// Clipping by planes of the shader's choice. Without it fragments are discarded.
+    pub clip_distances: bool,
     /// Wave operations in compute. Without them workgroup memory is used.
     pub subgroups: bool,
     /// Texture formats of 16-bit fixed point. Without it they are refused.
@@ -54,6 +56,7 @@ impl Capabilities {
             anisotropic_filtering: !info.driver.contains("llvmpipe"),
             float32_blending: features.contains(wgpu::Features::FLOAT32_BLENDABLE),
             conservative_rasterization: features.contains(wgpu::Features::CONSERVATIVE_RASTERIZATION),
+            clip_distances: features.contains(wgpu::Features::CLIP_DISTANCES),
             subgroups: features.contains(wgpu::Features::SUBGROUP),
             norm16: features.contains(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM),
             adapter_formats: features.contains(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES),
@@ -90,6 +93,7 @@ const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::FLOAT32_FILTERABLE)
     .union(wgpu::Features::FLOAT32_BLENDABLE)
     .union(wgpu::Features::CONSERVATIVE_RASTERIZATION)
+    .union(wgpu::Features::CLIP_DISTANCES)
     .union(wgpu::Features::SUBGROUP)
     .union(wgpu::Features::TEXTURE_FORMAT_16BIT_NORM)
     .union(wgpu::Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES)

@@ -79,11 +79,13 @@ pub struct RenderTarget {
     pub adds: bool,
     /// Depths a texel: 1, or 4 by multisampling.
     pub samples: u32,
+    /// Whether every pixel that a triangle touches is drawn; needs the capability `conservative_rasterization`.
+    pub conservative: bool,
 }
 
 impl Default for RenderTarget {
     fn default() -> Self {
-        RenderTarget { colors: Vec::new(), depth: None, layers: 1, adds: false, samples: 1 }
+        RenderTarget { colors: Vec::new(), depth: None, layers: 1, adds: false, samples: 1, conservative: false }
     }
 }
 
@@ -195,7 +197,7 @@ impl PipelineCache {
                 compilation_options: Default::default(),
                 buffers: &[],
             },
-            primitive: Default::default(),
+            primitive: wgpu::PrimitiveState { conservative: target.conservative, ..Default::default() },
             depth_stencil: target.depth.map(|compare| wgpu::DepthStencilState {
                 format: wgpu::TextureFormat::Depth32Float,
                 depth_write_enabled: Some(true),

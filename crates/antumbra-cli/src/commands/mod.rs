@@ -5,6 +5,7 @@ mod compare;
 mod list;
 mod reference;
 mod render;
+mod study;
 
 use crate::cli::Command;
 use crate::error::CliError;
@@ -17,6 +18,7 @@ pub fn run(command: &Command) -> Result<(), CliError> {
         Command::Reference(args) => reference::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Study(study) => study::run(study),
         Command::Techniques(args) => list::techniques(args.json),
         Command::Scenes(args) => list::scenes(args.json),
         Command::Adapters(args) => list::adapters(args.json),

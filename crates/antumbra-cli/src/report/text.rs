@@ -54,6 +54,12 @@ pub fn percent(part: u64, whole: u64) -> String {
     format!("{:.1}\u{a0}%", 100.0 * part as f64 / whole.max(1) as f64)
 }
 
+/// The same of numbers that are not whole; a dash where there is nothing to divide by.
+pub fn percent_of(part: f64, whole: f64) -> String {
+    let percent = 100.0 * part / whole;
+    if percent.is_finite() { format!("{percent:.1}\u{a0}%") } else { "–".into() }
+}
+
 /// A file name without surprises.
 pub fn slug(text: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '-' || c == '.' { c } else { '-' };

@@ -8,7 +8,7 @@ use crate::recorder::{Recorder, depth_target};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
 use crate::technique::Memory;
-use crate::{Error, Frame, Gpu, bindings};
+use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use glam::Mat4;
 
 /// A square map of `near / z`, z being the linear distance along the light's normal and `near` that of the frustum
@@ -20,6 +20,7 @@ pub struct DepthMap {
     size: u32,
     samples: u32,
     view: wgpu::Buffer,
+    texel: wgpu::Buffer,
     culling: Culling,
 }
 
@@ -35,6 +36,23 @@ pub(crate) struct Drawing<'a> {
     pub farthest: Option<Farthest<'a>>,
     /// Buffers that every surface of a texel is handed to; see [`DepthLayers`](crate::passes::depth_layers::DepthLayers).
     pub layers: Option<&'a [Binding<'a>]>,
+    /// Whether a surface is drawn to every texel that it touches, not only to those whose middle it covers; then nothing
+    /// else can be kept.
+    pub touched: bool,
+}
+
+gpu_struct! {
+    /// See `conservative_map.wesl`.
+    pub(crate) struct ConservativeUniform {
+        /// Half a texel in the units of clip space, and a little more for rounding.
+        half_texel: f32,
+    }
+}
+
+impl ConservativeUniform {
+    fn of_map(size: u32) -> ConservativeUniform {
+        ConservativeUniform { half_texel: 1.001 / size as f32 }
+    }
 }
 
 /// The farthest surface of each texel that lies before another map of the same size.
@@ -49,7 +67,7 @@ pub(crate) struct Farthest<'a> {
 impl<'a> Drawing<'a> {
     /// The nearest of these surfaces.
     pub fn of(label: &'a str, surfaces: Surfaces) -> Drawing<'a> {
-        Drawing { label, surfaces, kept: wgpu::CompareFunction::Greater, farthest: None, layers: None }
+        Drawing { label, surfaces, kept: wgpu::CompareFunction::Greater, farthest: None, layers: None, touched: false }
     }
 }
 
@@ -69,6 +87,7 @@ impl DepthMap {
             size,
             samples,
             view: uniform(gpu, "map view", &MapView::new(Mat4::IDENTITY)),
+            texel: uniform(gpu, "map texel", &ConservativeUniform::of_map(size)),
             culling: Culling::new(gpu, casters),
         })
     }
@@ -109,6 +128,13 @@ impl DepthMap {
         self.draw(recorder, casters, clip_from_world, &drawing)
     }
 
+    /// Draws the casters that the light's centre sees, each to every texel that it touches: what no texel of a window
+    /// shows is not in that window. Holes of masked materials that are smaller than a texel may be closed.
+    pub(crate) fn record_touched(&self, recorder: &mut Recorder, frame: &Frame, label: &str) -> Result<(), Error> {
+        let drawing = Drawing { touched: true, ..Drawing::of(label, Surfaces::Casters) };
+        self.draw(recorder, &frame.casters, frame.map_clip_from_world(), &drawing)
+    }
+
     /// Draws what is asked for.
     pub(crate) fn draw(
         &self,
@@ -121,12 +147,17 @@ impl DepthMap {
         recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
         self.culling.record(recorder, "cluster culling", casters, drawing.surfaces, &self.view)?;
         let depth = Some(drawing.kept);
-        let target = RenderTarget { depth, samples: self.samples, ..RenderTarget::default() };
-        let key = ShaderKey::new("passes::depth_map").with::<MapView>().with::<BatchLayout>().with::<LayerShape>();
-        let key = key.feature("layers", drawing.layers.is_some()).feature("farthest", drawing.farthest.is_some());
+        let native = drawing.touched && recorder.gpu.capabilities.conservative_rasterization;
+        let target = RenderTarget { depth, samples: self.samples, conservative: native, ..RenderTarget::default() };
+        let key = match drawing.touched {
+            true => Self::key("passes::conservative_map").feature("native", native),
+            false => Self::key("passes::depth_map")
+                .feature("layers", drawing.layers.is_some())
+                .feature("farthest", drawing.farthest.is_some()),
+        };
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
         let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
-        let set = bindings! { map_view: &self.view, visible: &self.culling.visible };
+        let set = bindings! { map_view: &self.view, visible: &self.culling.visible, conservative: &self.texel };
         let mut set = [set, drawing.layers.unwrap_or_default()].concat();
         if let Some(Farthest { before, depths }) = drawing.farthest {
             recorder.encoder.clear_buffer(depths, 0, None);
@@ -148,6 +179,11 @@ impl DepthMap {
             }
         });
         Ok(())
+    }
+
+    fn key(module: &'static str) -> ShaderKey {
+        let key = ShaderKey::new(module).with::<MapView>().with::<BatchLayout>();
+        key.with::<LayerShape>().with::<ConservativeUniform>()
     }
 
     /// What was culled.

@@ -8,12 +8,14 @@ pub mod csm;
 pub mod cssm;
 pub mod esm;
 pub mod evsm;
+pub mod fvsm;
 pub mod hard;
 pub mod msm;
 pub mod packet;
 pub mod pcf;
 pub mod pcss;
 pub mod prefiltered;
+pub mod pvssm;
 pub mod savsm;
 pub mod smooth_pcss;
 pub mod ssm;
@@ -39,6 +41,8 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<cssm::Cssm>(),
     entry::<backprojection::Backprojection>(),
     entry::<packet::Packet>(),
+    entry::<pvssm::Pvssm>(),
+    entry::<fvsm::Fvsm>(),
     entry::<uniform_sampling::UniformSampling>(),
     entry::<adaptive_sampling::AdaptiveSampling>(),
 ];

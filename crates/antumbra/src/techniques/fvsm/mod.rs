@@ -1,0 +1,46 @@
+//! Fitted virtual shadow maps [Giegl and Wimmer 2007]: hard shadows with a texel for each pixel, antialiased.
+
+use super::pvssm::{Pvssm, PvssmSettings, Rho};
+use crate::frame::PointFrame;
+use crate::recorder::Recorder;
+use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
+use crate::{Error, Frame, Gpu};
+use serde_json::{Map, Value};
+
+/// [`Pvssm`] of a light that is a point at the light's centre: kernels are the pixels' footprints.
+pub struct Fvsm {
+    tiles: Pvssm,
+    point: Option<PointFrame>,
+}
+
+impl Describe for Fvsm {
+    type Settings = PvssmSettings;
+    const ABOUT: About = About {
+        name: "fvsm",
+        title: "Fitted virtual shadow maps",
+        source: "Giegl 2007",
+        summary: "hard shadows with a texel a pixel, however large the scene; antialiased over the pixel's footprint",
+    };
+
+    fn defaults(_given: &Map<String, Value>) -> PvssmSettings {
+        PvssmSettings { rho: Rho::Fitted, ..PvssmSettings::default() }
+    }
+
+    fn make(gpu: &Gpu, settings: PvssmSettings) -> Result<Self, Error> {
+        Ok(Fvsm { tiles: Pvssm::new(gpu, Self::ABOUT.name, settings)?, point: None })
+    }
+}
+
+impl Technique for Fvsm {
+    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+        self.tiles.record(PointFrame::of(&mut self.point, recorder.gpu, frame), recorder)
+    }
+
+    fn memory(&self) -> Vec<Memory> {
+        self.tiles.memory()
+    }
+
+    fn figures<'a>(&'a self, gpu: &'a Gpu) -> FiguresFuture<'a> {
+        self.tiles.figures(gpu)
+    }
+}

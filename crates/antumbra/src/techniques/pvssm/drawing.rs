@@ -1,0 +1,144 @@
+//! Drawing tiles into the pool: clusters are culled for all tiles of a round at once, and drawn once for each tile that
+//! they touch [Shen 2011, section 5.2, step 7].
+
+use super::plan::{MOST_OF_ROUND, MOST_ROUNDS, Plan, Tile};
+use super::{PvssmSettings, PvssmUniform};
+use crate::casters::{BatchLayout, CLUSTER_TRIANGLES, Casters};
+use crate::passes::culling::MapView;
+use crate::pipeline::RenderTarget;
+use crate::recorder::Recorder;
+use crate::resource::{Texture, UniformArray, buffer_of, storage_buffer, uniform};
+use crate::shader::{HostStruct, ShaderKey};
+use crate::technique::Memory;
+use crate::{Error, Frame, Gpu, bindings, gpu_struct};
+use glam::Mat4;
+
+gpu_struct! {
+    /// Which filling of the pool a pass is for.
+    pub(crate) struct RoundUniform {
+        round: u32,
+    }
+}
+
+/// Bytes of the arguments of an indirect draw.
+const DRAW_BYTES: u64 = 16;
+/// Clusters that a draw list can tell apart: the rest of its 32 bits says which tile.
+const MOST_CLUSTERS: u32 = 1 << 26;
+
+const CULLING: &str = "tile culling";
+const TILES: &str = "tiles";
+
+/// The pool and what is drawn into it.
+pub(crate) struct Drawing {
+    /// `Depth32Float`, `near / z`.
+    pub pool: Texture,
+    /// The number of each round.
+    pub rounds: UniformArray<RoundUniform>,
+    view: wgpu::Buffer,
+    visible: wgpu::Buffer,
+    draws: wgpu::Buffer,
+    no_draws: wgpu::Buffer,
+    size: u32,
+}
+
+impl Drawing {
+    /// Makes it in `slot` unless one of this size for these casters is there.
+    pub fn ensure<'a>(
+        slot: &'a mut Option<Drawing>,
+        gpu: &Gpu,
+        casters: &Casters,
+        settings: &PvssmSettings,
+    ) -> Result<&'a Drawing, Error> {
+        let visible = Self::visible_bytes(casters);
+        let draws = casters.batches.len().max(1) as u64 * DRAW_BYTES;
+        let fits = |d: &Drawing| d.size == settings.tile && d.visible.size() == visible && d.draws.size() == draws;
+        if !slot.as_ref().is_some_and(fits) {
+            *slot = None; // Frees the old pool before the new one is made.
+            *slot = Some(Drawing::new(gpu, casters, settings)?);
+        }
+        Ok(slot.as_ref().expect("just made"))
+    }
+
+    fn visible_bytes(casters: &Casters) -> u64 {
+        (u64::from(casters.item_count) * MOST_OF_ROUND as u64 * 4).max(16)
+    }
+
+    fn new(gpu: &Gpu, casters: &Casters, settings: &PvssmSettings) -> Result<Drawing, Error> {
+        if casters.item_count >= MOST_CLUSTERS {
+            let most = u64::from(MOST_CLUSTERS) * u64::from(CLUSTER_TRIANGLES);
+            return Err(Error::Validation(format!("tiles can be drawn of {most} triangles at most")));
+        }
+        let none = [3 * CLUSTER_TRIANGLES, 0, 0, 0].repeat(casters.batches.len().max(1));
+        let no_draws = buffer_of(gpu, "no draws", bytemuck::cast_slice(&none), wgpu::BufferUsages::COPY_SRC);
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
+        let rounds: Vec<RoundUniform> = (0..MOST_ROUNDS as u32).map(|round| RoundUniform { round }).collect();
+        Ok(Drawing {
+            pool: Texture::depth(gpu, "pool of tiles", [settings.tile; 2], 1, usage),
+            rounds: UniformArray::new(gpu, "rounds", &rounds),
+            view: uniform(gpu, "map view", &MapView::new(Mat4::IDENTITY)),
+            visible: storage_buffer(gpu, "visible clusters of tiles", Self::visible_bytes(casters)),
+            draws: storage_buffer(gpu, "cluster draws", no_draws.size()),
+            no_draws,
+            size: settings.tile,
+        })
+    }
+
+    fn key(module: &'static str) -> ShaderKey {
+        let key = ShaderKey::new(module).with::<MapView>().with::<BatchLayout>().with::<RoundUniform>();
+        key.with::<PvssmUniform>().with::<Tile>()
+    }
+
+    /// Draws the tiles of a round that are not kept.
+    pub fn draw_tiles(&self, frame: &Frame, recorder: &mut Recorder, plan: &Plan, round: u32) -> Result<(), Error> {
+        let casters = &frame.casters;
+        if round == 0 {
+            let view = MapView::new(frame.map_clip_from_world());
+            recorder.gpu.queue.write_buffer(&self.view, 0, &view.uniform_bytes());
+        }
+        let number = self.rounds.at(round);
+        let set = bindings! {
+            pvssm: &plan.uniform,
+            tile_plan: &plan.tiles,
+            tile_round: &number,
+            map_view: &self.view,
+            boxes: &casters.cluster_bounds,
+            visible: &self.visible,
+            draws: &self.draws,
+        };
+        let cull = recorder.gpu.compute_pipeline(&Self::key("techniques::pvssm::cull_tiles"), "cull_for_tiles")?;
+        recorder.encoder.copy_buffer_to_buffer(&self.no_draws, 0, &self.draws, 0, self.draws.size());
+        recorder.compute_pass(CULLING, |gpu, pass| {
+            pass.set_pipeline(&cull.pipeline);
+            pass.set_bind_group(0, &cull.bind_group(gpu, 0, set), &[]);
+            for (i, batch) in casters.batches.iter().enumerate().filter(|(_, b)| b.item_count > 0) {
+                pass.set_bind_group(1, &cull.bind_group(gpu, 1, &batch.bindings(casters)), &[]);
+                pass.dispatch_workgroups_indirect(&plan.arguments, plan.cull_offset(round, i));
+            }
+        });
+        let target = RenderTarget { depth: Some(wgpu::CompareFunction::Greater), ..RenderTarget::default() };
+        let clipped = recorder.gpu.capabilities.clip_distances;
+        let key = Self::key("techniques::pvssm::draw_tiles").feature("clipped", clipped);
+        let opaque = recorder.gpu.render_pipeline(&key, &target)?;
+        let masked = recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?;
+        let always = RenderTarget { depth: Some(wgpu::CompareFunction::Always), ..target };
+        let wipe = recorder.gpu.render_pipeline(&Self::key("techniques::pvssm::wipe_tiles"), &always)?;
+        recorder.layered_depth_pass(TILES, &self.pool.view, 1, |gpu, pass| {
+            pass.set_pipeline(&wipe.pipeline);
+            pass.set_bind_group(0, &wipe.bind_group(gpu, 0, set), &[]);
+            pass.draw_indirect(&plan.arguments, plan.wipe_offset(round));
+            for (i, batch) in casters.batches.iter().enumerate() {
+                let pipeline = if batch.masked { &masked } else { &opaque };
+                pass.set_pipeline(&pipeline.pipeline);
+                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, set), &[]);
+                pass.set_bind_group(1, &pipeline.bind_group(gpu, 1, &batch.bindings(casters)), &[]);
+                pass.draw_indirect(&self.draws, i as u64 * DRAW_BYTES);
+            }
+        });
+        Ok(())
+    }
+
+    /// GPU memory by pass.
+    pub fn memory(&self) -> [Memory; 2] {
+        [Memory::new(CULLING, self.visible.size() + 2 * self.draws.size()), Memory::new(TILES, self.pool.bytes())]
+    }
+}

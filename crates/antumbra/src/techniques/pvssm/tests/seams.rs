@@ -1,0 +1,69 @@
+//! Kernels that overlap several tiles: many tiles give what one map of the same resolution gives.
+
+use super::super::PvssmSettings;
+use super::super::analysis::Analysis;
+use super::super::drawing::Drawing;
+use super::super::filtering::Filtering;
+use super::super::plan::Plan;
+use super::{drawn, gpu, scene, submit};
+use crate::scene::SceneRenderer;
+use pollster::block_on;
+
+const SIZE: [u32; 2] = [128, 96];
+/// Texels over the whole window.
+const RESOLUTION: f32 = 256.0;
+
+/// The picture if every cell asks for the same, whatever the kernels ask for, and the number of tiles and rounds.
+fn with_constant_resolution(renderer: &SceneRenderer, tile: u32) -> (Vec<f32>, [u32; 2]) {
+    let settings = PvssmSettings { map: 256, tile, rounds: 16, grid: 16, thrifty: false, ..PvssmSettings::default() };
+    let (frame, gpu) = (&renderer.frame, gpu());
+    let (mut analysis, mut plan, mut drawing, mut filtering) = (None, None, None, None);
+    let analysis = Analysis::ensure(&mut analysis, gpu, frame, &settings).expect("small");
+    let plan = Plan::ensure(&mut plan, gpu, &frame.casters, &settings);
+    let drawing = Drawing::ensure(&mut drawing, gpu, &frame.casters, &settings).expect("small");
+    let filtering = Filtering::ensure(&mut filtering, gpu, SIZE, &settings).expect("small");
+    let nodes: u32 = (0..=4).map(|level| (16u32 >> level).pow(2)).sum();
+    let mut noted = vec![0.0; 2 * nodes as usize];
+    noted[..2 * 256].fill(RESOLUTION);
+    submit(|recorder| {
+        analysis.low_resolution_map(frame, recorder)?;
+        analysis.list_pixels(frame, recorder)?;
+        analysis.shape_kernels(frame, recorder, plan)
+    });
+    plan.write_grid(gpu, &noted);
+    submit(|recorder| {
+        plan.decide(recorder)?;
+        filtering.bin_pixels(frame, recorder, analysis, plan)?;
+        for round in 0..settings.rounds {
+            drawing.draw_tiles(frame, recorder, plan, round)?;
+            filtering.soften(frame, recorder, analysis, plan, drawing, round)?;
+        }
+        Ok(())
+    });
+    let decided = block_on(plan.read(gpu)).expect("reads");
+    let picture = block_on(renderer.read_visibility(gpu)).expect("reads");
+    (picture, [decided.tiles.len() as u32, decided.rounds])
+}
+
+#[test]
+fn tiles_of_one_resolution_are_one_map() {
+    for name in ["fence:slats=9", "square", "layers", "plant"] {
+        let renderer = drawn(&scene(name), SIZE);
+        let (whole, one) = with_constant_resolution(&renderer, 256);
+        assert_eq!(one, [1, 1], "{name}");
+        for (tile, expected) in [(128, [4, 4]), (64, [16, 16])] {
+            let (parts, tiles) = with_constant_resolution(&renderer, tile);
+            assert_eq!(tiles, expected, "{name}: tiles and rounds of {tile} texels");
+            let differences: Vec<f32> = whole.iter().zip(&parts).map(|(a, b)| (a - b).abs()).collect();
+            let worst = differences.iter().copied().fold(0.0, f32::max);
+            let over = differences.iter().filter(|d| **d >= 1e-3).count();
+            let penumbra = whole.iter().filter(|v| (0.01..0.99).contains(*v)).count();
+            println!("{name}, tiles of {tile}: at most {worst}, {over} of {penumbra} pixels in penumbra over 1e-3");
+            assert!(penumbra > 200, "{name}: {penumbra} pixels in penumbra");
+            // Corners are moved to a grid of 1/256 texel, which lies elsewhere for another place in the pool: where an
+            // edge passes the very middle of a texel, that texel may be drawn in one map and not in the other.
+            assert!(500 * over <= penumbra, "{name}, tiles of {tile}: {over} pixels, {worst}");
+            assert!(worst < 0.05, "{name}, tiles of {tile}: {worst}");
+        }
+    }
+}
