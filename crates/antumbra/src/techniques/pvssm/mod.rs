@@ -151,7 +151,7 @@ impl Technique for Pvssm {
         plan.predict(frame, recorder, analysis)?;
         let rounds = match settings.decision {
             Decision::Gpu => plan.decide(recorder)?,
-            Decision::Wait => plan.decide_on_the_cpu(recorder, settings, &frame.casters)?,
+            Decision::Wait => plan.decide_on_the_cpu(recorder, settings)?,
         };
         filtering.bin_pixels(frame, recorder, analysis, plan)?;
         for round in 0..rounds {

@@ -216,18 +216,12 @@ impl Plan {
     }
 
     /// Submits what is recorded so far, waits for the grid and decides on the CPU. Returns the number of rounds.
-    pub fn decide_on_the_cpu(
-        &self,
-        recorder: &mut Recorder,
-        settings: &PvssmSettings,
-        casters: &Casters,
-    ) -> Result<u32, Error> {
+    pub fn decide_on_the_cpu(&self, recorder: &mut Recorder, settings: &PvssmSettings) -> Result<u32, Error> {
         let gpu = recorder.gpu;
         let encoder = gpu.device.create_command_encoder(&Default::default());
         let before = std::mem::replace(recorder.encoder, encoder);
         gpu.queue.submit([before.finish()]);
         let decided = decide(&pollster::block_on(self.read_grid(gpu))?, settings);
-        debug_assert_eq!(casters.batches.len(), self.batches.len());
         for (buffer, words) in [
             (&self.tiles, decided.words()),
             (&self.cells, decided.cells(self.side)),

@@ -47,7 +47,7 @@ fn with_constant_resolution(renderer: &SceneRenderer, tile: u32) -> (Vec<f32>, [
 
 #[test]
 fn tiles_of_one_resolution_are_one_map() {
-    for name in ["fence:slats=9", "square", "layers", "plant"] {
+    for (name, most_over) in [("fence:slats=9", 4), ("square", 0), ("layers", 350), ("plant", 350)] {
         let renderer = drawn(&scene(name), SIZE);
         let (whole, one) = with_constant_resolution(&renderer, 256);
         assert_eq!(one, [1, 1], "{name}");
@@ -58,12 +58,16 @@ fn tiles_of_one_resolution_are_one_map() {
             let worst = differences.iter().copied().fold(0.0, f32::max);
             let over = differences.iter().filter(|d| **d >= 1e-3).count();
             let penumbra = whole.iter().filter(|v| (0.01..0.99).contains(*v)).count();
-            println!("{name}, tiles of {tile}: at most {worst}, {over} of {penumbra} pixels in penumbra over 1e-3");
+            let mean = differences.iter().sum::<f32>() / penumbra as f32;
+            println!("{name}, tiles of {tile}: {mean} in the mean, at most {worst}, {over} of {penumbra} over 1e-3");
             assert!(penumbra > 200, "{name}: {penumbra} pixels in penumbra");
+            assert!(mean < 3e-4, "{name}, tiles of {tile}: {mean} in the mean");
             // Corners are moved to a grid of 1/256 texel, which lies elsewhere for another place in the pool: where an
-            // edge passes the very middle of a texel, that texel may be drawn in one map and not in the other.
-            assert!(500 * over <= penumbra, "{name}, tiles of {tile}: {over} pixels, {worst}");
-            assert!(worst < 0.05, "{name}, tiles of {tile}: {worst}");
+            // edge passes the very middle of a texel, that texel may be drawn in one map and not in the other. It is a
+            // hundredth of the kernels that it lies in. Sheets over each other have many such edges, a receiver over
+            // which nothing but one caster lies has almost none.
+            assert!(worst < 0.025, "{name}, tiles of {tile}: {worst}");
+            assert!(over <= most_over, "{name}, tiles of {tile}: {over} pixels, {worst}");
         }
     }
 }
