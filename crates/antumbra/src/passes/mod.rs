@@ -2,6 +2,7 @@
 
 pub mod classify;
 pub mod cluster_bounds;
+pub mod compact;
 pub mod culling;
 pub mod depth_layers;
 pub mod depth_map;
@@ -12,5 +13,7 @@ pub mod light_maps;
 pub mod moments;
 pub mod patch_pyramid;
 pub mod picture;
+pub mod scan;
+pub mod sort;
 pub mod sparse;
 pub mod summed_area;
