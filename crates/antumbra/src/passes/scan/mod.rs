@@ -6,24 +6,28 @@ use crate::shader::ShaderKey;
 use crate::{Error, Gpu, bindings};
 
 /// The length of a list on the GPU, 16 bytes: arguments of an indirect dispatch of 64 elements a workgroup, then the
-/// count. [`PenumbraList`](crate::passes::classify::PenumbraList) begins with one.
+/// count. Passes read it as a uniform or as storage.
 #[derive(Clone, Debug)]
 pub struct ListLength(pub wgpu::Buffer);
 
 impl ListLength {
-    /// Its size in bytes.
-    pub const BYTES: u64 = 16;
-
     /// Of an empty list, which a pass will count.
     pub fn unknown(gpu: &Gpu, label: &str) -> ListLength {
-        ListLength(storage_buffer(gpu, label, ListLength::BYTES))
+        ListLength::of_words(gpu, label, [0, 1, 1, 0])
     }
 
     /// Of a list that the host knows.
     pub fn known(gpu: &Gpu, label: &str, count: u32) -> ListLength {
         let groups = count.div_ceil(64);
-        let words = [groups.min(1 << 15), groups.div_ceil(1 << 15), 1, count];
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::INDIRECT | wgpu::BufferUsages::COPY_SRC;
+        ListLength::of_words(gpu, label, [groups.min(1 << 15), groups.div_ceil(1 << 15), 1, count])
+    }
+
+    fn of_words(gpu: &Gpu, label: &str, words: [u32; 4]) -> ListLength {
+        let usage = wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::UNIFORM
+            | wgpu::BufferUsages::INDIRECT
+            | wgpu::BufferUsages::COPY_SRC
+            | wgpu::BufferUsages::COPY_DST;
         ListLength(buffer_of(gpu, label, bytemuck::cast_slice(&words), usage))
     }
 
