@@ -24,6 +24,8 @@ gpu_struct! {
 
 /// Bytes of a `LightTriangle` in `shaders/light_triangles.wesl`.
 const TRIANGLE_BYTES: u64 = 48;
+/// Bytes of a `LightCluster`.
+const CLUSTER_BYTES: u64 = 32;
 
 /// Triangles that are looked at together. There are several such parts where there are more triangles than memory is
 /// spent on, and one for each batch with holes, whose texture is bound where the holes are looked up.
@@ -40,11 +42,25 @@ pub struct LightTriangles {
     pub buffer: wgpu::Buffer,
     /// How many.
     pub length: ListLength,
+    /// `LightCluster`, where the whole light counts: which triangles lie side by side, and where.
+    pub clusters: wgpu::Buffer,
+    /// How many.
+    pub cluster_length: ListLength,
+    reach: Reach,
     capacity: u32,
 }
 
+/// What a triangle is gathered for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// What it hides of the light's centre.
+    Center,
+    /// What it hides of any point of the light; clusters are noted.
+    Light,
+}
+
 impl LightTriangles {
-    /// The parts of these casters, of at most `most` triangles each but for the rest of a cluster.
+    /// The parts of these casters, one at least, of at most `most` triangles each.
     pub fn parts(casters: &Casters, most: u32) -> Vec<Part> {
         let most = (most / CLUSTER_TRIANGLES).max(1);
         let mut parts: Vec<Part> = Vec::new();
@@ -63,15 +79,24 @@ impl LightTriangles {
                 room -= count;
             }
         }
+        if parts.is_empty() {
+            parts.push(Part { clusters: Vec::new(), masked: None });
+        }
         parts
     }
 
     /// Room for the largest of these parts.
-    pub fn new(gpu: &Gpu, parts: &[Part]) -> LightTriangles {
+    pub fn new(gpu: &Gpu, parts: &[Part], reach: Reach) -> LightTriangles {
         let capacity = LightTriangles::capacity_for(parts);
         LightTriangles {
             buffer: storage_buffer(gpu, "light triangles", u64::from(capacity) * TRIANGLE_BYTES),
             length: ListLength::unknown(gpu, "number of light triangles"),
+            clusters: storage_buffer(gpu, "light clusters", match reach {
+                Reach::Center => 0,
+                Reach::Light => u64::from(capacity / CLUSTER_TRIANGLES) * CLUSTER_BYTES,
+            }),
+            cluster_length: ListLength::unknown(gpu, "number of light clusters"),
+            reach,
             capacity,
         }
     }
@@ -87,16 +112,19 @@ impl LightTriangles {
         self.capacity
     }
 
-    /// Gathers the triangles of a part that may hide the light from something in the frustum: any of its points, or its
-    /// centre only.
-    pub fn record(&self, recorder: &mut Recorder, frame: &Frame, part: &Part, centre_only: bool) -> Result<(), Error> {
+    /// Gathers the triangles of a part that may hide the light from something in the frustum.
+    pub fn record(&self, recorder: &mut Recorder, frame: &Frame, part: &Part) -> Result<(), Error> {
         let key = ShaderKey::new("passes::light_triangles::gather")
             .with::<FrameUniform>()
             .with::<BatchLayout>()
-            .with::<GatherUniform>();
+            .with::<GatherUniform>()
+            .feature("clusters", self.reach == Reach::Light);
         let gather = recorder.gpu.compute_pipeline(&key, "gather_triangles")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
-        let half_light = if centre_only { Vec2::ZERO } else { frame.light.size * 0.5 };
+        let half_light = match self.reach {
+            Reach::Center => Vec2::ZERO,
+            Reach::Light => frame.light.size * 0.5,
+        };
         let light_from_world = light_from_world(&frame.light).as_mat4();
         let uniform = |&(_, first_item, item_count): &(usize, u32, u32)| GatherUniform {
             light_from_world,
@@ -106,7 +134,9 @@ impl LightTriangles {
         };
         let uniforms: Vec<_> = part.clusters.iter().map(uniform).collect();
         let uniforms = UniformArray::new(recorder.gpu, "clusters to gather", &uniforms);
-        recorder.encoder.clear_buffer(&self.length.0, 0, None);
+        for length in [&self.length, &self.cluster_length] {
+            recorder.encoder.clear_buffer(&length.0, 0, None);
+        }
         recorder.compute_pass("light triangles", |gpu, pass| {
             for (i, &(batch, _, count)) in part.clusters.iter().enumerate() {
                 let gathered = uniforms.at(i as u32);
@@ -115,6 +145,8 @@ impl LightTriangles {
                     boxes: &frame.casters.cluster_bounds,
                     gathered: &self.buffer,
                     gathered_length: &self.length.0,
+                    gathered_clusters: &self.clusters,
+                    cluster_length: &self.cluster_length.0,
                 });
                 let batch: &Batch = &frame.casters.batches[batch];
                 pass.set_pipeline(&gather.pipeline);
@@ -124,7 +156,7 @@ impl LightTriangles {
                 dispatch(pass, &gather, Work::Groups([side, count.div_ceil(side), 1]));
             }
             pass.set_pipeline(&finish.pipeline);
-            let set = bindings! { gathered_length: &self.length.0 };
+            let set = bindings! { gathered_length: &self.length.0, cluster_length: &self.cluster_length.0 };
             pass.set_bind_group(0, &finish.bind_group(gpu, 0, set), &[]);
             dispatch(pass, &finish, Work::Groups([1, 1, 1]));
         });
@@ -133,6 +165,6 @@ impl LightTriangles {
 
     /// GPU memory by pass.
     pub fn memory(&self) -> Memory {
-        Memory::new("light triangles", self.buffer.size())
+        Memory::new("light triangles", self.buffer.size() + self.clusters.size())
     }
 }

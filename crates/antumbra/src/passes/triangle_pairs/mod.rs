@@ -11,7 +11,7 @@
 
 use crate::frame::{Frame, FrameUniform};
 use crate::passes::growth::Growth;
-use crate::passes::light_triangles::{LightTriangles, Part};
+use crate::passes::light_triangles::{LightTriangles, Part, Reach};
 use crate::passes::scan::{ListLength, Scan};
 use crate::passes::sort::Sort;
 use crate::passes::texel_lists::{TexelLists, TexelMap};
@@ -110,7 +110,7 @@ impl TrianglePairs {
 
     /// For these parts; lists take at most about `budget` bytes.
     pub fn new(gpu: &Gpu, parts: &[Part], budget: u64) -> TrianglePairs {
-        let triangles = LightTriangles::new(gpu, parts);
+        let triangles = LightTriangles::new(gpu, parts, Reach::Center);
         let capacity = triangles.capacity();
         let binding = u64::from(gpu.device.limits().max_storage_buffer_binding_size) / 8;
         let most_pairs = (budget / (PAIR_BYTES + BLOCK_PAIR_BYTES)).min(binding).min(1 << 27) as u32;
@@ -164,7 +164,7 @@ impl TrianglePairs {
     ) -> Result<(), Error> {
         self.grow(recorder.gpu);
         for part in parts {
-            self.triangles.record(recorder, frame, part, true)?;
+            self.triangles.record(recorder, frame, part)?;
             self.find_pairs(recorder, frame, lists)?;
             self.look_at_pairs(recorder, frame, lists, part, look)?;
         }

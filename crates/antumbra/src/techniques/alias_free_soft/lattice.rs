@@ -1,0 +1,111 @@
+//! Points of the light: a lattice with the square of side 1 as a period, so that any place of it puts the same number of
+//! points into the square, as far from one another as can be [Korobov 1959]. It lies askew: no two points have the same
+//! x or the same y. Seen along its shortest vector it is rows of points at whole numbers, so what a triangle hides of a
+//! row is a run of bits.
+
+use glam::{DMat2, DVec2};
+
+/// Most rows of a lattice of 256 points.
+pub(crate) const MOST_ROWS: usize = 32;
+
+/// A lattice of `points` points in the square.
+#[derive(Clone, Debug)]
+pub(crate) struct Lattice {
+    /// From one point of a row to the next, and from a row to the next.
+    pub basis: DMat2,
+}
+
+/// The part of a row that lies in the square: its first point, and how many.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Row {
+    pub first: f64,
+    pub count: u32,
+}
+
+/// A lattice that is moved: point (i, j) lies at `origin + basis * (i, j)`.
+#[derive(Clone, Debug)]
+pub(crate) struct Placed {
+    pub origin: DVec2,
+    pub rows: Vec<Row>,
+}
+
+impl Lattice {
+    /// The lattice i (1, g) / points, modulo 1, whose shortest vector is longest.
+    pub fn new(points: u32) -> Lattice {
+        let bases = (1..points).step_by(2).map(|g| reduced(points, g));
+        let longest = bases.max_by(|a, b| a.x_axis.length_squared().total_cmp(&b.x_axis.length_squared()));
+        Lattice { basis: longest.expect("at least two points") }
+    }
+
+    /// The lattice moved by a part of the square's side.
+    pub fn placed(&self, by: DVec2) -> Placed {
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|c| (self.basis.inverse() * (c - by)).y);
+        let low = corners.iter().fold(f64::INFINITY, |m, v| m.min(*v)).ceil();
+        let high = corners.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v)).floor();
+        let origin = by + self.basis.y_axis * low;
+        let rows = (0..=(high - low) as i32).map(|j| self.row(origin + self.basis.y_axis * f64::from(j)));
+        Placed { origin, rows: rows.collect() }
+    }
+
+    /// The points `start + i * basis.x_axis` in [0, 1)².
+    fn row(&self, start: DVec2) -> Row {
+        let along = self.basis.x_axis;
+        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
+        for (s, a) in [(start.x, along.x), (start.y, along.y)] {
+            let ends = [-s / a, (1.0 - s) / a];
+            (low, high) = (low.max(ends[0].min(ends[1])), high.min(ends[0].max(ends[1])));
+        }
+        let (first, end) = (low.ceil(), high.ceil());
+        Row { first, count: (end - first).max(0.0) as u32 }
+    }
+}
+
+/// The shortest two vectors of a lattice [Gauss], the shortest first.
+fn reduced(points: u32, g: u32) -> DMat2 {
+    let n = f64::from(points);
+    let (mut a, mut b) = (DVec2::new(1.0, f64::from(g)) / n, DVec2::Y);
+    loop {
+        if b.length_squared() < a.length_squared() {
+            std::mem::swap(&mut a, &mut b);
+        }
+        let shorter = b - a * (a.dot(b) / a.length_squared()).round();
+        // By more than rounding, or it would go on for ever between two of the same length.
+        if shorter.length_squared() > 0.999_999 * b.length_squared() {
+            return DMat2::from_cols(a, b);
+        }
+        b = shorter;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_place_of_a_lattice_has_all_points_in_the_square_and_no_two_in_a_line_with_its_edges() {
+        for points in [32, 64, 128, 256] {
+            let lattice = Lattice::new(points);
+            for k in 0..40 {
+                let by = (DVec2::new(0.754_877_666, 0.569_840_296) * f64::from(k) + 0.5 / f64::from(points)).fract();
+                let placed = lattice.placed(by);
+                assert!(placed.rows.len() <= MOST_ROWS, "{} rows", placed.rows.len());
+                let mut all = Vec::new();
+                for (j, row) in placed.rows.iter().enumerate() {
+                    assert!(row.count <= 32, "{row:?}");
+                    for i in 0..row.count {
+                        let p = placed.origin + lattice.basis * DVec2::new(row.first + f64::from(i), j as f64);
+                        assert!(p.cmpge(DVec2::splat(-1e-9)).all() && p.cmple(DVec2::splat(1.0 + 1e-9)).all(), "{p}");
+                        all.push(p);
+                    }
+                }
+                assert_eq!(all.len(), points as usize, "moved by {by}");
+                for axis in 0..2 {
+                    let mut places: Vec<f64> = all.iter().map(|p| p[axis]).collect();
+                    places.sort_by(f64::total_cmp);
+                    let least = places.windows(2).map(|w| w[1] - w[0]).fold(1.0, f64::min);
+                    assert!(least > 0.99 / f64::from(points), "two points in a line: {least}");
+                }
+            }
+        }
+    }
+}
