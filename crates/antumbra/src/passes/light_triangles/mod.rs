@@ -91,10 +91,14 @@ impl LightTriangles {
         LightTriangles {
             buffer: storage_buffer(gpu, "light triangles", u64::from(capacity) * TRIANGLE_BYTES),
             length: ListLength::unknown(gpu, "number of light triangles"),
-            clusters: storage_buffer(gpu, "light clusters", match reach {
-                Reach::Center => 0,
-                Reach::Light => u64::from(capacity / CLUSTER_TRIANGLES) * CLUSTER_BYTES,
-            }),
+            clusters: storage_buffer(
+                gpu,
+                "light clusters",
+                match reach {
+                    Reach::Center => 0,
+                    Reach::Light => u64::from(capacity / CLUSTER_TRIANGLES) * CLUSTER_BYTES,
+                },
+            ),
             cluster_length: ListLength::unknown(gpu, "number of light clusters"),
             reach,
             capacity,

@@ -15,49 +15,43 @@ pub(crate) struct Lattice {
     pub basis: DMat2,
 }
 
-/// The part of a row that lies in the square: its first point, and how many.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Row {
-    pub first: f64,
-    pub count: u32,
-}
-
-/// A lattice that is moved: point (i, j) lies at `origin + basis * (i, j)`.
+/// A lattice that is moved: point (i, j) lies at `origin + basis * (i, j)`, and is in the square if bit i of row j is set.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub origin: DVec2,
-    pub rows: Vec<Row>,
+    pub rows: Vec<u32>,
 }
 
 impl Lattice {
     /// The lattice i (1, g) / points, modulo 1, whose shortest vector is longest.
     pub fn new(points: u32) -> Lattice {
-        let bases = (1..points).step_by(2).map(|g| reduced(points, g));
+        let bases = (1..points).filter(|g| coprime(*g, points)).map(|g| reduced(points, g));
         let longest = bases.max_by(|a, b| a.x_axis.length_squared().total_cmp(&b.x_axis.length_squared()));
         Lattice { basis: longest.expect("at least two points") }
     }
 
-    /// The lattice moved by a part of the square's side.
+    /// The lattice moved by a part of the square's side, its first point in the square having the smallest coordinates.
     pub fn placed(&self, by: DVec2) -> Placed {
-        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|c| (self.basis.inverse() * (c - by)).y);
-        let low = corners.iter().fold(f64::INFINITY, |m, v| m.min(*v)).ceil();
-        let high = corners.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v)).floor();
-        let origin = by + self.basis.y_axis * low;
-        let rows = (0..=(high - low) as i32).map(|j| self.row(origin + self.basis.y_axis * f64::from(j)));
-        Placed { origin, rows: rows.collect() }
+        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE].map(|c| self.basis.inverse() * (c - by));
+        let low = corners.iter().fold(DVec2::INFINITY, |m, v| m.min(*v)).ceil();
+        let high = corners.iter().fold(DVec2::NEG_INFINITY, |m, v| m.max(*v)).floor();
+        let origin = by + self.basis * low;
+        let inside = |i: i32, j: i32| {
+            let p = origin + self.basis * DVec2::new(f64::from(i), f64::from(j));
+            p.cmpge(DVec2::ZERO).all() && p.cmplt(DVec2::ONE).all()
+        };
+        let size = (high - low).as_ivec2();
+        let row = |j| (0..=size.x.min(31)).filter(|&i| inside(i, j)).fold(0, |bits, i| bits | 1u32 << i);
+        Placed { origin, rows: (0..=size.y).map(row).collect() }
     }
+}
 
-    /// The points `start + i * basis.x_axis` in [0, 1)².
-    fn row(&self, start: DVec2) -> Row {
-        let along = self.basis.x_axis;
-        let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
-        for (s, a) in [(start.x, along.x), (start.y, along.y)] {
-            let ends = [-s / a, (1.0 - s) / a];
-            (low, high) = (low.max(ends[0].min(ends[1])), high.min(ends[0].max(ends[1])));
-        }
-        let (first, end) = (low.ceil(), high.ceil());
-        Row { first, count: (end - first).max(0.0) as u32 }
+/// Every point has an x and a y of its own if these have no factor in common.
+fn coprime(mut a: u32, mut b: u32) -> bool {
+    while b > 0 {
+        (a, b) = (b, a % b);
     }
+    a == 1
 }
 
 /// The shortest two vectors of a lattice [Gauss], the shortest first.
@@ -83,7 +77,7 @@ mod tests {
 
     #[test]
     fn every_place_of_a_lattice_has_all_points_in_the_square_and_no_two_in_a_line_with_its_edges() {
-        for points in [32, 64, 128, 256] {
+        for points in [2, 6, 32, 37, 64, 100, 128, 255, 256] {
             let lattice = Lattice::new(points);
             for k in 0..40 {
                 let by = (DVec2::new(0.754_877_666, 0.569_840_296) * f64::from(k) + 0.5 / f64::from(points)).fract();
@@ -91,11 +85,8 @@ mod tests {
                 assert!(placed.rows.len() <= MOST_ROWS, "{} rows", placed.rows.len());
                 let mut all = Vec::new();
                 for (j, row) in placed.rows.iter().enumerate() {
-                    assert!(row.count <= 32, "{row:?}");
-                    for i in 0..row.count {
-                        let p = placed.origin + lattice.basis * DVec2::new(row.first + f64::from(i), j as f64);
-                        assert!(p.cmpge(DVec2::splat(-1e-9)).all() && p.cmple(DVec2::splat(1.0 + 1e-9)).all(), "{p}");
-                        all.push(p);
+                    for i in (0..32).filter(|i| row >> i & 1 != 0) {
+                        all.push(placed.origin + lattice.basis * DVec2::new(f64::from(i), j as f64));
                     }
                 }
                 assert_eq!(all.len(), points as usize, "moved by {by}");

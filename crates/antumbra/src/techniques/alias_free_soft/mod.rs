@@ -16,21 +16,7 @@ use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
 use glam::{DVec2, Vec2, Vec4};
 use lattice::{Lattice, MOST_ROWS};
 
-mod lattice;
-
-crate::choices! {
-    /// Points of the light.
-    pub enum Samples {
-        /// Thirty-two.
-        S32 = "32",
-        /// Sixty-four.
-        S64 = "64",
-        /// A hundred and twenty-eight.
-        S128 = "128",
-        /// Two hundred and fifty-six.
-        S256 = "256",
-    }
-}
+pub(crate) mod lattice;
 
 crate::choices! {
     /// Whether all pixels look at the same points.
@@ -46,16 +32,9 @@ crate::settings! {
     /// Settings of [`AliasFreeSoft`].
     pub struct AliasFreeSoftSettings {
         /// Points of the light.
-        samples: Samples = Samples::S256, Kind::Choice { options: Samples::OPTIONS };
+        samples: u32 = 256, Kind::Integer { min: 2, max: 256 };
         /// The same points for all pixels, or moved and mirrored from pixel to pixel.
         points: Points = Points::Same, Kind::Choice { options: Points::OPTIONS };
-    }
-}
-
-impl Samples {
-    /// How many.
-    pub fn count(self) -> u32 {
-        32 << self as u32
     }
 }
 
@@ -69,7 +48,7 @@ gpu_struct! {
 
 gpu_struct! {
     /// Which part of the triangles is looked at.
-    pub(crate) struct SoftUniform {
+    pub(crate) struct TrianglePart {
         part: u32,
         parts: u32,
         /// Places of the lattice among which pixels choose.
@@ -108,10 +87,10 @@ impl Describe for AliasFreeSoft {
     };
 
     fn make(gpu: &Gpu, settings: AliasFreeSoftSettings) -> Result<Self, Error> {
-        let count = settings.samples.count();
+        let count = settings.samples;
         let lattice = Lattice::new(count);
         let places = if settings.points == Points::Moved { PLACEMENTS } else { 1 };
-        let (mut placements, mut rows) = (Vec::new(), Vec::new());
+        let (mut placements, mut rows) = (Vec::new(), Vec::<u32>::new());
         for k in 0..places {
             // Evenly over a cell of the lattice's period [Roberts 2018, "R2"].
             let by = (DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3) * f64::from(k)
@@ -120,11 +99,7 @@ impl Describe for AliasFreeSoft {
             let placed = lattice.placed(by);
             let center = lattice.basis.inverse() * (DVec2::splat(0.5) - placed.origin);
             placements.push(Vec4::new(center.x as f32, center.y as f32, placed.rows.len() as f32, 0.0));
-            let mut all = vec![Vec2::ZERO; MOST_ROWS];
-            for (to, row) in all.iter_mut().zip(&placed.rows) {
-                *to = Vec2::new(row.first as f32, row.count as f32);
-            }
-            rows.extend(all);
+            rows.extend(placed.rows.iter().copied().chain(std::iter::repeat(0)).take(MOST_ROWS));
         }
         let storage = wgpu::BufferUsages::STORAGE;
         Ok(AliasFreeSoft {
@@ -167,7 +142,7 @@ impl Technique for AliasFreeSoft {
         gpu.queue.write_buffer(&self.uniform, 0, &self.lattice_uniform(frame).uniform_bytes());
         let count = parts.len() as u32;
         let placements = if self.settings.points == Points::Moved { PLACEMENTS } else { 1 };
-        let uniforms: Vec<_> = (0..count).map(|part| SoftUniform { part, parts: count, placements }).collect();
+        let uniforms: Vec<_> = (0..count).map(|part| TrianglePart { part, parts: count, placements }).collect();
         let uniforms = UniformArray::new(gpu, "parts", &uniforms);
         for (i, part) in parts.iter().enumerate() {
             triangles.record(recorder, frame, part)?;
@@ -178,13 +153,13 @@ impl Technique for AliasFreeSoft {
                 .with::<FrameUniform>()
                 .with::<BatchLayout>()
                 .with::<LatticeUniform>()
-                .with::<SoftUniform>();
+                .with::<TrianglePart>();
             let soften = gpu.compute_pipeline(&key, "soften")?;
             let soft = uniforms.at(i as u32);
             let mut set = frame.bindings(bindings! {
                 lattice: &self.uniform,
                 placements: &self.placements,
-                lattice_rows: &self.rows,
+                lattice_points: &self.rows,
                 triangles: &triangles.buffer,
                 clusters: &triangles.clusters,
                 cluster_length: &triangles.cluster_length.0,
