@@ -62,6 +62,6 @@ fn more_points_a_pixel_tend_to_the_mean_over_the_pixel() {
         println!("{spec}: {:.4}", figures.average_error);
         figures.average_error
     });
-    assert!(errors.windows(2).all(|e| e[1] < 0.6 * e[0]), "{errors:?}");
-    assert!(errors[3] < 0.012, "{errors:?}");
+    assert!(errors.windows(2).all(|e| e[1] < 0.7 * e[0]), "{errors:?}");
+    assert!(errors[3] < 0.016, "{errors:?}");
 }
