@@ -1,8 +1,11 @@
 //! The hard shadow is that of the rays.
 
 use super::common::{builtin, compared, drawn, shadowed, technique, truth, visibility};
-use super::{differing, with_point_light};
+use super::with_point_light;
+use antumbra_reference::{Ray, Reference, Tracer};
+use antumbra_scene::Scene;
 use antumbra_scene::builtin::list;
+use glam::Vec2;
 
 const SIZE: [u32; 2] = [256, 160];
 
@@ -11,12 +14,43 @@ fn small(name: &str) -> String {
     match name {
         "bumpy" => "bumpy:side=120".to_owned(),
         "forest" => "forest:trees=12".to_owned(),
+        "pipes" => "pipes:triangles=300000".to_owned(),
         _ => name.to_owned(),
     }
 }
 
+/// Pixels where the two differ although the rays would say the same everywhere within a 64th of a pixel. Where they would
+/// not, an edge passes: rasterisers move corners to a grid of 1/256 pixel, so which side is seen is for them to say.
+fn unexplained(scene: &Scene, found: &[f32], truth: &Reference) -> (usize, usize) {
+    let tracer = Tracer::new(scene);
+    let differs = |i: &usize| truth.valid[*i] && found[*i] != truth.visibility[*i];
+    let wrong: Vec<usize> = (0..found.len()).filter(differs).collect();
+    let by_rays = |i: usize, x: f32, y: f32| {
+        let pixel = Vec2::new((i as u32 % SIZE[0]) as f32 + 0.5 + x, (i as u32 / SIZE[0]) as f32 + 0.5 + y);
+        lit(scene, &tracer, pixel)
+    };
+    let is_edge = |i: usize| {
+        let around = (0..16).map(|k| Vec2::from_angle(k as f32 * 0.3927) / if k % 2 == 0 { 64.0 } else { 160.0 });
+        around.map(|d| by_rays(i, d.x, d.y)).any(|lit| lit == found[i])
+    };
+    (wrong.len(), wrong.iter().filter(|&&i| !is_edge(i)).count())
+}
+
+/// What a ray through a place of the picture says of the light's centre.
+fn lit(scene: &Scene, tracer: &Tracer, pixel: Vec2) -> f32 {
+    let (right, up, forward) = scene.camera.basis();
+    let ndc = pixel / Vec2::new(SIZE[0] as f32, SIZE[1] as f32) * 2.0 - 1.0;
+    let tan = (0.5 * scene.camera.fov_y_deg).to_radians().tan();
+    let aspect = SIZE[0] as f32 / SIZE[1] as f32;
+    let direction = forward + right * (ndc.x * tan * aspect) - up * (ndc.y * tan);
+    let Some(hit) = tracer.nearest(&Ray::new(scene.camera.eye, direction)) else { return 1.0 };
+    let from = tracer.off_surface(&hit);
+    let faces = hit.normal.as_vec3().dot(scene.light.center - from) > 0.0;
+    if faces && !tracer.occluded(from, scene.light.center) { 1.0 } else { 0.0 }
+}
+
 #[test]
-fn every_scene_has_the_shadow_of_the_rays_in_all_but_one_of_ten_thousand_pixels() {
+fn every_scene_has_the_shadow_of_the_rays_but_on_edges() {
     let mut faults = Vec::new();
     let (mut pixels, mut wrong_in_all) = (0, 0);
     for info in list() {
@@ -24,12 +58,11 @@ fn every_scene_has_the_shadow_of_the_rays_in_all_but_one_of_ten_thousand_pixels(
         let truth = truth(&scene, SIZE, 1);
         let found = visibility(&scene, "alias-free", SIZE);
         let valid = truth.valid.iter().filter(|v| **v).count();
-        let wrong = differing(&found, &truth.visibility, &truth.valid);
-        println!("{}: {wrong} of {valid} pixels, {} triangles", scene.name, scene.triangle_count());
+        let (wrong, unexplained) = unexplained(&scene, &found, &truth);
+        println!("{}: {wrong} of {valid} pixels, {unexplained} not on an edge", scene.name);
         (pixels, wrong_in_all) = (pixels + valid, wrong_in_all + wrong);
-        // Single pixels on shared edges: a picture of this size affords 4.
-        if wrong > 4 {
-            faults.push(format!("{}: {wrong} of {valid} pixels differ", scene.name));
+        if unexplained * 10_000 > valid {
+            faults.push(format!("{}: {unexplained} of {valid} pixels differ where no edge is", scene.name));
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));

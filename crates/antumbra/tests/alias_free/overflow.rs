@@ -9,7 +9,8 @@ use pollster::block_on;
 const SIZE: [u32; 2] = [96, 96];
 
 /// Slivers from rim to rim, one over another: each touches a row of texels across the whole map, and all lie before the
-/// ground, so that none can be left out.
+/// ground, so that none can be left out. The camera looks at the ground from below them: whether it sees one that is thinner
+/// than a pixel is for the rasteriser to say.
 fn slivers(count: u32) -> Scene {
     let mut mesh = Mesh::default();
     for i in 0..count {
@@ -22,7 +23,11 @@ fn slivers(count: u32) -> Scene {
         mesh.positions.extend([middle - along, middle + along + across, middle + along - across]);
         mesh.indices.extend([first, first + 1, first + 2]);
     }
-    scene(vec![ground(1.0), mesh], camera([0.0, 3.0, 0.01], [0.0; 3], 35.0), light([0.3, 4.0, 0.2], [0.0; 3], 0.0))
+    scene(
+        vec![ground(1.0), mesh],
+        camera([0.0, 0.45, 1.2], [0.0, 0.0, 0.2], 40.0),
+        light([0.3, 4.0, 0.2], [0.0; 3], 0.0),
+    )
 }
 
 /// Of the last frame: what was needed, and the room that there was.
@@ -34,15 +39,15 @@ fn needed_and_room(technique: &dyn antumbra::Technique) -> [f64; 2] {
 
 #[test]
 fn a_frame_without_room_has_the_same_picture() {
-    let scene = slivers(3000);
+    let scene = slivers(1200);
     let renderer = drawn(&scene, SIZE);
     let truth = truth(&scene, SIZE, 1);
-    let roomy = shadowed(&renderer, &mut *technique("alias-free:map=1024")).expect("records");
+    let roomy = shadowed(&renderer, &mut *technique("alias-free:map=512")).expect("records");
     let dark = roomy.iter().filter(|v| **v == 0.0).count();
-    assert!(dark > 500 && dark < 8500, "{dark} pixels are dark");
+    assert!(dark > 300 && dark < 8900, "{dark} pixels are dark");
     let wrong = differing(&roomy, &truth.visibility, &truth.valid);
     assert!(wrong <= 3, "{wrong} pixels differ from the rays");
-    for spec in ["alias-free:map=1024,budget=0", "alias-free:map=1024,budget=1"] {
+    for spec in ["alias-free:map=512,budget=0", "alias-free:map=512,budget=1"] {
         let mut small = technique(spec);
         for frame in 0..4 {
             let picture = shadowed(&renderer, &mut *small).expect("records");
@@ -55,8 +60,8 @@ fn a_frame_without_room_has_the_same_picture() {
 
 #[test]
 fn room_grows_to_what_frames_need() {
-    let renderer = drawn(&slivers(3000), SIZE);
-    let mut one = technique("alias-free:map=1024");
+    let renderer = drawn(&slivers(1200), SIZE);
+    let mut one = technique("alias-free:map=512");
     let mut rooms = Vec::new();
     let mut pictures = Vec::new();
     for _ in 0..4 {
