@@ -3,7 +3,7 @@
 use super::common::{builtin, camera, compared, cuboid, ground, light, quad, scene, truth, visibility};
 use antumbra_scene::Scene;
 
-const SIZE: [u32; 2] = [96, 72];
+const SIZE: [u32; 2] = [64, 48];
 
 /// Mean error against the truth.
 fn error(scene: &Scene, spec: &str) -> f64 {
@@ -15,7 +15,9 @@ fn error(scene: &Scene, spec: &str) -> f64 {
 
 #[test]
 fn penumbrae_are_those_of_the_rays() {
-    for (name, most) in [("fence", 0.006), ("cage", 0.008), ("plant", 0.006), ("spheres", 0.006), ("layers", 0.006)] {
+    // With holes in leaves (plant), so that parts of the triangles are looked at one after the other.
+    let scenes = [("fence", 0.007), ("layers", 0.007), ("cage", 0.009), ("plant:leaves=4", 0.008)];
+    for (name, most) in scenes {
         for points in ["same", "moved"] {
             let found = error(&builtin(name), &format!("alias-free-soft:points={points}"));
             assert!(found < most, "{name}, {points} points: {found:.4} is over {most}");

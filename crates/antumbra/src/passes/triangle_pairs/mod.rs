@@ -112,7 +112,7 @@ impl TrianglePairs {
     pub fn new(gpu: &Gpu, parts: &[Part], budget: u64) -> TrianglePairs {
         let triangles = LightTriangles::new(gpu, parts, Reach::Center);
         let capacity = triangles.capacity();
-        let binding = u64::from(gpu.device.limits().max_storage_buffer_binding_size) / 8;
+        let binding = gpu.device.limits().max_storage_buffer_binding_size / 8;
         let most_pairs = (budget / (PAIR_BYTES + BLOCK_PAIR_BYTES)).min(binding).min(1 << 27) as u32;
         let length = |label| ListLength::unknown(gpu, label);
         TrianglePairs {
