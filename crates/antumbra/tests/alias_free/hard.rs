@@ -30,7 +30,8 @@ fn unexplained(scene: &Scene, found: &[f32], truth: &Reference) -> (usize, usize
         lit(scene, &tracer, pixel)
     };
     let is_edge = |i: usize| {
-        let around = (0..16).map(|k| Vec2::from_angle(k as f32 * 0.3927) / if k % 2 == 0 { 64.0 } else { 160.0 });
+        let around = (0..16)
+            .map(|k| Vec2::from_angle(k as f32 * std::f32::consts::FRAC_PI_8) / if k % 2 == 0 { 64.0 } else { 160.0 });
         around.map(|d| by_rays(i, d.x, d.y)).any(|lit| lit == found[i])
     };
     (wrong.len(), wrong.iter().filter(|&&i| !is_edge(i)).count())

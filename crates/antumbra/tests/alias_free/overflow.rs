@@ -39,17 +39,17 @@ fn needed_and_room(technique: &dyn antumbra::Technique) -> [f64; 2] {
 
 #[test]
 fn a_frame_without_room_has_the_same_picture() {
-    let scene = slivers(1200);
+    let scene = slivers(700);
     let renderer = drawn(&scene, SIZE);
     let truth = truth(&scene, SIZE, 1);
     let roomy = shadowed(&renderer, &mut *technique("alias-free:map=512")).expect("records");
     let dark = roomy.iter().filter(|v| **v == 0.0).count();
-    assert!(dark > 300 && dark < 8900, "{dark} pixels are dark");
+    assert!(dark > 200 && dark < 8900, "{dark} pixels are dark");
     let wrong = differing(&roomy, &truth.visibility, &truth.valid);
     assert!(wrong <= 3, "{wrong} pixels differ from the rays");
     for spec in ["alias-free:map=512,budget=0", "alias-free:map=512,budget=1"] {
         let mut small = technique(spec);
-        for frame in 0..4 {
+        for frame in 0..2 {
             let picture = shadowed(&renderer, &mut *small).expect("records");
             assert!(picture == roomy, "{spec}, frame {frame}: the picture differs");
             let [needed, room] = needed_and_room(&*small);
@@ -60,8 +60,9 @@ fn a_frame_without_room_has_the_same_picture() {
 
 #[test]
 fn room_grows_to_what_frames_need() {
-    let renderer = drawn(&slivers(1200), SIZE);
+    let renderer = drawn(&slivers(1600), SIZE);
     let mut one = technique("alias-free:map=512");
+    // 65 536 at first.
     let mut rooms = Vec::new();
     let mut pictures = Vec::new();
     for _ in 0..4 {
