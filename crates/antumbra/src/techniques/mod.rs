@@ -3,6 +3,8 @@
 use crate::technique::{TechniqueInfo, entry};
 
 pub mod adaptive_sampling;
+pub mod alias_free;
+pub mod alias_free_soft;
 pub mod backprojection;
 pub mod csm;
 pub mod cssm;
@@ -45,4 +47,6 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<fvsm::Fvsm>(),
     entry::<uniform_sampling::UniformSampling>(),
     entry::<adaptive_sampling::AdaptiveSampling>(),
+    entry::<alias_free::AliasFree>(),
+    entry::<alias_free_soft::AliasFreeSoft>(),
 ];

@@ -7,10 +7,12 @@ mod footprint;
 mod frame;
 mod horizon;
 mod layers;
+mod light_lattice;
 mod mask;
 mod moments;
 mod patches;
 mod penumbra;
+mod ray_to_center;
 mod smooth_kernel;
 mod summed_area;
 

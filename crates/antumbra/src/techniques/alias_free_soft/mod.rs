@@ -1,0 +1,188 @@
+//! Alias-free soft shadows: each pixel's own triangles against many points of the light, a bit a point [Sintorn, Eisemann,
+//! Assarsson 2008, in spirit].
+//!
+//! Nothing is listed: a tile of pixels goes over the clusters of triangles that may stand between it and the light, so
+//! there is no list that could be too long. Which clusters and triangles these are is decided by the convex hull of the
+//! tile's surface points and the light, so no caster is missed, whether or not the light's centre sees it.
+
+use crate::casters::BatchLayout;
+use crate::frame::FrameUniform;
+use crate::passes::light_triangles::{LightTriangles, Reach};
+use crate::recorder::{Recorder, Work, dispatch};
+use crate::resource::{UniformArray, buffer_of, storage_buffer, uniform};
+use crate::shader::{HostStruct, ShaderKey};
+use crate::technique::{About, Describe, Memory, Technique};
+use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
+use glam::{DVec2, Vec2, Vec4};
+use lattice::{Lattice, MOST_ROWS};
+
+pub(crate) mod lattice;
+
+crate::choices! {
+    /// Whether all pixels look at the same points.
+    pub enum Points {
+        /// All do: penumbrae without grain, in as many steps as there are points.
+        Same = "same",
+        /// Each moves and mirrors them in its own way: grain instead of steps.
+        Moved = "moved",
+    }
+}
+
+crate::settings! {
+    /// Settings of [`AliasFreeSoft`].
+    pub struct AliasFreeSoftSettings {
+        /// Points of the light.
+        samples: u32 = 256, Kind::Integer { min: 2, max: 256 };
+        /// The same points for all pixels, or moved and mirrored from pixel to pixel.
+        points: Points = Points::Same, Kind::Choice { options: Points::OPTIONS };
+    }
+}
+
+gpu_struct! {
+    /// From metres on the light to the lattice of its points; see `shaders/light_lattice.wesl`.
+    pub(crate) struct LatticeUniform {
+        /// What a metre along x and one along y add to the lattice's coordinates.
+        coordinates: Vec4,
+    }
+}
+
+gpu_struct! {
+    /// Which part of the triangles is looked at.
+    pub(crate) struct TrianglePart {
+        part: u32,
+        parts: u32,
+        /// Places of the lattice among which pixels choose.
+        placements: u32,
+    }
+}
+
+/// Places of the lattice that pixels take where each has its own.
+const PLACEMENTS: u32 = 16;
+
+/// Triangles that are held in light space at once: 48 MiB of them.
+const MOST_TRIANGLES: u32 = 1 << 20;
+
+/// The narrowest light that has points, as a part of the distance to the nearest surface: a penumbra far below a pixel.
+const LEAST_LIGHT: f32 = 1e-4;
+
+/// Shadow of a rectangular light by points of it.
+pub struct AliasFreeSoft {
+    settings: AliasFreeSoftSettings,
+    lattice: Lattice,
+    uniform: wgpu::Buffer,
+    placements: wgpu::Buffer,
+    rows: wgpu::Buffer,
+    triangles: Option<LightTriangles>,
+    /// Hidden points of each pixel, where triangles are looked at in several parts.
+    masks: Option<wgpu::Buffer>,
+}
+
+impl Describe for AliasFreeSoft {
+    type Settings = AliasFreeSoftSettings;
+    const ABOUT: About = About {
+        name: "alias-free-soft",
+        title: "Alias-free soft shadows",
+        source: "after Sintorn 2008",
+        summary: "triangles against points of the light from every pixel, without a map: next to ray-traced",
+    };
+
+    fn make(gpu: &Gpu, settings: AliasFreeSoftSettings) -> Result<Self, Error> {
+        let count = settings.samples;
+        let lattice = Lattice::new(count);
+        let places = if settings.points == Points::Moved { PLACEMENTS } else { 1 };
+        let (mut placements, mut rows) = (Vec::new(), Vec::<u32>::new());
+        for k in 0..places {
+            // Evenly over a cell of the lattice's period [Roberts 2018, "R2"].
+            let by = (DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3) * f64::from(k)
+                + 0.5 / f64::from(count))
+            .fract();
+            let placed = lattice.placed(by);
+            let center = lattice.basis.inverse() * (DVec2::splat(0.5) - placed.origin);
+            placements.push(Vec4::new(center.x as f32, center.y as f32, placed.rows.len() as f32, 0.0));
+            rows.extend(placed.rows.iter().copied().chain(std::iter::repeat(0)).take(MOST_ROWS));
+        }
+        let storage = wgpu::BufferUsages::STORAGE;
+        Ok(AliasFreeSoft {
+            uniform: uniform(gpu, "light lattice", &LatticeUniform { coordinates: Vec4::ZERO }),
+            placements: buffer_of(gpu, "places of the lattice", bytemuck::cast_slice(&placements), storage),
+            rows: buffer_of(gpu, "rows of points", bytemuck::cast_slice(&rows), storage),
+            lattice,
+            settings,
+            triangles: None,
+            masks: None,
+        })
+    }
+}
+
+impl AliasFreeSoft {
+    /// Lattice coordinates of metres on this light.
+    fn lattice_uniform(&self, frame: &Frame) -> LatticeUniform {
+        let least = LEAST_LIGHT * frame.frustum.receivers[0];
+        let size = frame.light.size.max(Vec2::splat(least)).as_dvec2();
+        let inverse = self.lattice.basis.inverse();
+        let (x, y) = ((inverse.x_axis / size.x).as_vec2(), (inverse.y_axis / size.y).as_vec2());
+        LatticeUniform { coordinates: Vec4::new(x.x, x.y, y.x, y.y) }
+    }
+}
+
+impl Technique for AliasFreeSoft {
+    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+        let gpu = recorder.gpu;
+        let [width, height] = frame.geometry.size;
+        let parts = LightTriangles::parts(&frame.casters, MOST_TRIANGLES);
+        if self.triangles.as_ref().is_none_or(|t| t.capacity() != LightTriangles::capacity_for(&parts)) {
+            self.triangles = None; // Frees the old ones before the new ones are made.
+            self.triangles = Some(LightTriangles::new(gpu, &parts, Reach::Light));
+        }
+        let triangles = self.triangles.as_ref().expect("just made");
+        let bytes = u64::from(width) * u64::from(height) * MOST_ROWS as u64 * 4;
+        if parts.len() > 1 && self.masks.as_ref().is_none_or(|m| m.size() != bytes) {
+            self.masks = Some(storage_buffer(gpu, "hidden points", bytes));
+        }
+        gpu.queue.write_buffer(&self.uniform, 0, &self.lattice_uniform(frame).uniform_bytes());
+        let count = parts.len() as u32;
+        let placements = if self.settings.points == Points::Moved { PLACEMENTS } else { 1 };
+        let uniforms: Vec<_> = (0..count).map(|part| TrianglePart { part, parts: count, placements }).collect();
+        let uniforms = UniformArray::new(gpu, "parts", &uniforms);
+        for (i, part) in parts.iter().enumerate() {
+            triangles.record(recorder, frame, part)?;
+            let batch = part.masked.map(|index| &frame.casters.batches[index]);
+            let key = ShaderKey::new("techniques::alias_free_soft::soften")
+                .feature("masked", batch.is_some())
+                .feature("parts", parts.len() > 1)
+                .with::<FrameUniform>()
+                .with::<BatchLayout>()
+                .with::<LatticeUniform>()
+                .with::<TrianglePart>();
+            let soften = gpu.compute_pipeline(&key, "soften")?;
+            let soft = uniforms.at(i as u32);
+            let mut set = frame.bindings(bindings! {
+                lattice: &self.uniform,
+                placements: &self.placements,
+                lattice_points: &self.rows,
+                triangles: &triangles.buffer,
+                clusters: &triangles.clusters,
+                cluster_length: &triangles.cluster_length.0,
+                soft: &soft,
+            });
+            if let Some(masks) = &self.masks {
+                set.extend_from_slice(bindings! { masks: masks });
+            }
+            recorder.compute_pass("visibility", |gpu, pass| {
+                pass.set_pipeline(&soften.pipeline);
+                pass.set_bind_group(0, &soften.bind_group(gpu, 0, &set), &[]);
+                if let Some(batch) = batch {
+                    pass.set_bind_group(1, &soften.bind_group(gpu, 1, &batch.bindings(&frame.casters)), &[]);
+                }
+                dispatch(pass, &soften, Work::Groups([width.div_ceil(8), height.div_ceil(8), 1]));
+            });
+        }
+        Ok(())
+    }
+
+    fn memory(&self) -> Vec<Memory> {
+        let masks = self.masks.as_ref().map_or(0, |m| m.size());
+        let own = Memory::new("visibility", masks + self.rows.size() + self.placements.size());
+        self.triangles.iter().map(LightTriangles::memory).chain([own]).collect()
+    }
+}
