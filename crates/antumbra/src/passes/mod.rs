@@ -1,5 +1,6 @@
 //! What several techniques share.
 
+pub mod adjacency;
 pub mod classify;
 pub mod cluster_bounds;
 pub mod culling;
@@ -12,5 +13,6 @@ pub mod light_maps;
 pub mod moments;
 pub mod patch_pyramid;
 pub mod picture;
+pub mod silhouette;
 pub mod sparse;
 pub mod summed_area;
