@@ -228,7 +228,9 @@ mod tests {
             let own = text.contains(&format!("package::{name}::"));
             own || name == "warp" && text.contains("package::shaders::stored_texel::")
         };
-        let Some(name) = ["warp", "soft"].into_iter().find(|name| asks(name)) else { return vec![Vec::new()] };
+        let Some(name) = ["warp", "soft", "listed", "pair"].into_iter().find(|name| asks(name)) else {
+            return vec![Vec::new()];
+        };
         // Techniques that are read by a module `soft` have nothing for a lookup.
         let serves = |module: &str| !text.contains("package::warp::visible") || module.contains("fn visible(");
         let modules = SOURCES.iter().filter(|(path, text)| path.ends_with(&format!("::{name}")) && serves(text));

@@ -29,6 +29,13 @@ pub struct GeometryBuffer {
     view: wgpu::Buffer,
 }
 
+impl ViewUniform {
+    /// Of a view.
+    pub(crate) fn of(view: &View) -> ViewUniform {
+        ViewUniform { clip_from_world: view.clip_from_world(), eye_ws: view.eye() }
+    }
+}
+
 impl GeometryBuffer {
     /// Textures of a picture's size.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<GeometryBuffer, Error> {
@@ -45,8 +52,18 @@ impl GeometryBuffer {
 
     /// Draws everything, receivers and casters, in a fixed order: coplanar surfaces fall out the same every time.
     pub fn record(&self, recorder: &mut Recorder, casters: &Casters, view: &View) -> Result<(), Error> {
-        let value = ViewUniform { clip_from_world: view.clip_from_world(), eye_ws: view.eye() };
-        recorder.gpu.queue.write_buffer(&self.view, 0, &value.uniform_bytes());
+        recorder.gpu.queue.write_buffer(&self.view, 0, &ViewUniform::of(view).uniform_bytes());
+        self.draw(recorder, "geometry buffer", casters, &self.view)
+    }
+
+    /// The same by a view that is on the GPU.
+    pub(crate) fn draw(
+        &self,
+        recorder: &mut Recorder,
+        label: &str,
+        casters: &Casters,
+        view: &wgpu::Buffer,
+    ) -> Result<(), Error> {
         let target = RenderTarget {
             colors: vec![self.normal.texture.format(), self.color.texture.format()],
             depth: Some(wgpu::CompareFunction::Greater),
@@ -59,11 +76,11 @@ impl GeometryBuffer {
             color_target(&self.normal.view, wgpu::Color::TRANSPARENT),
             color_target(&self.color.view, wgpu::Color::TRANSPARENT),
         ];
-        recorder.render_pass("geometry buffer", &colors, Some(depth_target(&self.depth.view)), |gpu, pass| {
+        recorder.render_pass(label, &colors, Some(depth_target(&self.depth.view)), |gpu, pass| {
             for batch in casters.batches.iter().filter(|b| b.item_count > 0) {
                 let pipeline = if batch.textured { &textured } else { &plain };
                 pass.set_pipeline(&pipeline.pipeline);
-                let set = bindings! { picture_view: &self.view };
+                let set = bindings! { picture_view: view };
                 pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, set), &[]);
                 pass.set_bind_group(1, &pipeline.bind_group(gpu, 1, &batch.bindings(casters)), &[]);
                 pass.draw(0..3 * CLUSTER_TRIANGLES, 0..batch.item_count);

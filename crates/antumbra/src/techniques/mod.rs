@@ -3,6 +3,7 @@
 use crate::technique::{TechniqueInfo, entry};
 
 pub mod adaptive_sampling;
+pub mod alias_free;
 pub mod backprojection;
 pub mod csm;
 pub mod cssm;
@@ -39,4 +40,5 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<packet::Packet>(),
     entry::<uniform_sampling::UniformSampling>(),
     entry::<adaptive_sampling::AdaptiveSampling>(),
+    entry::<alias_free::AliasFree>(),
 ];

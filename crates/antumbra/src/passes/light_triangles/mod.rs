@@ -1,0 +1,138 @@
+//! The triangles that may cast on what is seen, in light space, gathered once a frame: passes that look at triangles one
+//! by one read each corner from one place instead of from the host's buffers.
+
+use crate::casters::{Batch, BatchLayout, CLUSTER_TRIANGLES, Casters};
+use crate::frame::{Frame, FrameUniform, light_from_world};
+use crate::passes::scan::ListLength;
+use crate::recorder::{Recorder, Work, dispatch};
+use crate::resource::{UniformArray, storage_buffer};
+use crate::shader::ShaderKey;
+use crate::technique::Memory;
+use crate::{Error, Gpu, bindings, gpu_struct};
+use glam::{Mat4, Vec2};
+
+gpu_struct! {
+    /// Which clusters of a batch are gathered, and into which space.
+    pub(crate) struct GatherUniform {
+        light_from_world: Mat4,
+        /// Half the light's edges, metres; 0 if only its centre counts.
+        half_light: Vec2,
+        first_item: u32,
+        item_count: u32,
+    }
+}
+
+/// Bytes of a `LightTriangle` in `shaders/light_triangles.wesl`.
+const TRIANGLE_BYTES: u64 = 48;
+
+/// Triangles that are looked at together. There are several such parts where there are more triangles than memory is
+/// spent on, and one for each batch with holes, whose texture is bound where the holes are looked up.
+pub struct Part {
+    /// Batch, first cluster in it, and how many.
+    clusters: Vec<(usize, u32, u32)>,
+    /// The batch whose material has holes, if it has.
+    pub masked: Option<usize>,
+}
+
+/// Triangles in light space.
+pub struct LightTriangles {
+    /// `LightTriangle`, see `shaders/light_triangles.wesl`.
+    pub buffer: wgpu::Buffer,
+    /// How many.
+    pub length: ListLength,
+    capacity: u32,
+}
+
+impl LightTriangles {
+    /// The parts of these casters, of at most `most` triangles each but for the rest of a cluster.
+    pub fn parts(casters: &Casters, most: u32) -> Vec<Part> {
+        let most = (most / CLUSTER_TRIANGLES).max(1);
+        let mut parts: Vec<Part> = Vec::new();
+        let mut room = 0;
+        for (index, batch) in casters.batches.iter().enumerate() {
+            let masked = batch.masked.then_some(index);
+            let mut first = 0;
+            while first < batch.item_count {
+                if room == 0 || masked.is_some() && first == 0 || parts.last().is_some_and(|p| p.masked != masked) {
+                    parts.push(Part { clusters: Vec::new(), masked });
+                    room = most;
+                }
+                let count = room.min(batch.item_count - first);
+                parts.last_mut().expect("just made").clusters.push((index, first, count));
+                first += count;
+                room -= count;
+            }
+        }
+        parts
+    }
+
+    /// Room for the largest of these parts.
+    pub fn new(gpu: &Gpu, parts: &[Part]) -> LightTriangles {
+        let capacity = LightTriangles::capacity_for(parts);
+        LightTriangles {
+            buffer: storage_buffer(gpu, "light triangles", u64::from(capacity) * TRIANGLE_BYTES),
+            length: ListLength::unknown(gpu, "number of light triangles"),
+            capacity,
+        }
+    }
+
+    /// Triangles of the largest of these parts, whole clusters counted.
+    pub fn capacity_for(parts: &[Part]) -> u32 {
+        let clusters = parts.iter().map(|p| p.clusters.iter().map(|(_, _, n)| n).sum::<u32>()).max();
+        clusters.unwrap_or(0).max(1) * CLUSTER_TRIANGLES
+    }
+
+    /// Most triangles of a part.
+    pub fn capacity(&self) -> u32 {
+        self.capacity
+    }
+
+    /// Gathers the triangles of a part that may hide the light from something in the frustum: any of its points, or its
+    /// centre only.
+    pub fn record(&self, recorder: &mut Recorder, frame: &Frame, part: &Part, centre_only: bool) -> Result<(), Error> {
+        let key = ShaderKey::new("passes::light_triangles::gather")
+            .with::<FrameUniform>()
+            .with::<BatchLayout>()
+            .with::<GatherUniform>();
+        let gather = recorder.gpu.compute_pipeline(&key, "gather_triangles")?;
+        let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
+        let half_light = if centre_only { Vec2::ZERO } else { frame.light.size * 0.5 };
+        let light_from_world = light_from_world(&frame.light).as_mat4();
+        let uniform = |&(_, first_item, item_count): &(usize, u32, u32)| GatherUniform {
+            light_from_world,
+            half_light,
+            first_item,
+            item_count,
+        };
+        let uniforms: Vec<_> = part.clusters.iter().map(uniform).collect();
+        let uniforms = UniformArray::new(recorder.gpu, "clusters to gather", &uniforms);
+        recorder.encoder.clear_buffer(&self.length.0, 0, None);
+        recorder.compute_pass("light triangles", |gpu, pass| {
+            for (i, &(batch, _, count)) in part.clusters.iter().enumerate() {
+                let gathered = uniforms.at(i as u32);
+                let set = frame.bindings(bindings! {
+                    gather: &gathered,
+                    boxes: &frame.casters.cluster_bounds,
+                    gathered: &self.buffer,
+                    gathered_length: &self.length.0,
+                });
+                let batch: &Batch = &frame.casters.batches[batch];
+                pass.set_pipeline(&gather.pipeline);
+                pass.set_bind_group(0, &gather.bind_group(gpu, 0, &set), &[]);
+                pass.set_bind_group(1, &gather.bind_group(gpu, 1, &batch.bindings(&frame.casters)), &[]);
+                let side = count.min(1 << 15);
+                dispatch(pass, &gather, Work::Groups([side, count.div_ceil(side), 1]));
+            }
+            pass.set_pipeline(&finish.pipeline);
+            let set = bindings! { gathered_length: &self.length.0 };
+            pass.set_bind_group(0, &finish.bind_group(gpu, 0, set), &[]);
+            dispatch(pass, &finish, Work::Groups([1, 1, 1]));
+        });
+        Ok(())
+    }
+
+    /// GPU memory by pass.
+    pub fn memory(&self) -> Memory {
+        Memory::new("light triangles", self.buffer.size())
+    }
+}
