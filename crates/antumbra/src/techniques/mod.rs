@@ -17,6 +17,7 @@ pub mod pcss;
 pub mod prefiltered;
 pub mod savsm;
 pub mod ssm;
+pub mod subpixel;
 pub mod summed;
 pub mod uniform_sampling;
 pub mod vsm;
@@ -38,6 +39,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<cssm::Cssm>(),
     entry::<backprojection::Backprojection>(),
     entry::<packet::Packet>(),
+    entry::<subpixel::Subpixel>(),
     entry::<uniform_sampling::UniformSampling>(),
     entry::<adaptive_sampling::AdaptiveSampling>(),
     entry::<alias_free::AliasFree>(),
