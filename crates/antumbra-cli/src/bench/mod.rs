@@ -6,6 +6,7 @@ mod adaptive;
 mod backprojection;
 pub mod kit;
 mod ssm;
+mod subpixel;
 mod vsm;
 
 use crate::error::CliError;
@@ -13,7 +14,7 @@ use antumbra::settings::nearest;
 use kit::{Findings, Lab};
 
 /// Every suite.
-pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE, ssm::SUITE, vsm::SUITE];
+pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE, ssm::SUITE, subpixel::SUITE, vsm::SUITE];
 
 /// What is measured of a paper.
 #[derive(Debug)]

@@ -10,7 +10,7 @@
 //! [docs/subpixel.md](https://github.com/antumbra/antumbra/blob/main/docs/subpixel.md) tells it in full.
 
 mod half_planes;
-mod lists;
+pub(crate) mod lists;
 pub mod pattern;
 mod settings;
 #[cfg(test)]
