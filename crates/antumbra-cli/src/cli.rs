@@ -268,7 +268,10 @@ mod tests {
         std::fs::write(&file, "0.5 0.5\n0.25, 0.75\n").expect("a folder for temporary files");
         let text = format!("subpixel:map=256,points=@{}", file.display());
         let read = text.parse::<Technique>().unwrap_or_else(|e| panic!("{e}")).0;
-        assert_eq!((read.settings["points"].clone(), read.text), (serde_json::json!([[0.5, 0.5], [0.25, 0.75]]), text.clone()));
+        assert_eq!(
+            (read.settings["points"].clone(), read.text),
+            (serde_json::json!([[0.5, 0.5], [0.25, 0.75]]), text.clone())
+        );
         std::fs::remove_file(&file).expect("was just written");
         let error = text.parse::<Technique>().expect_err("the file is gone").to_string();
         assert!(error.contains("cannot read") && error.contains("points"), "{error}");

@@ -64,7 +64,10 @@ fn on_planes_only_the_rounding_of_lines_differs_from_rays() {
     let square = |scene: &Scene, spec: &str| {
         let (mean, drawn) = off(scene, spec);
         let partial = drawn.visibility.iter().filter(|v| **v > 0.0 && **v < 1.0).count();
-        println!("{spec}: {mean:.5} over {} silhouette pixels, {partial} partly in shadow", drawn.figures["silhouette pixels"]);
+        println!(
+            "{spec}: {mean:.5} over {} silhouette pixels, {partial} partly in shadow",
+            drawn.figures["silhouette pixels"]
+        );
         assert!(mean < 0.005 && partial > 50, "{spec}: {mean} over silhouettes, {partial} partly in shadow");
     };
     let plate = scene(
@@ -106,7 +109,9 @@ fn invalid_samples_are_those_that_would_darken_a_bumpy_receiver() {
     let [masked, all] = [true, false].map(|on| drawn_by(&scene, &format!("subpixel:statistics=true,validity={on}")));
     let [with, without] = [&masked, &all].map(|d| differences(d, &rays).iter().sum::<f64>());
     let valid = masked.figures["valid samples half in shadow"];
-    println!("bumpy: {valid:.1} of 32 samples valid; differences {with:.1} with the validity mask, {without:.1} without");
+    println!(
+        "bumpy: {valid:.1} of 32 samples valid; differences {with:.1} with the validity mask, {without:.1} without"
+    );
     // The paper's bumpy receiver: 18.5 of 32, of pixels at a shadow's boundary.
     assert!((9.0..28.0).contains(&valid), "{valid} of 32 samples are valid");
     assert!(with < 0.7 * without, "{with} with the mask, {without} without");

@@ -144,7 +144,10 @@ impl Compared {
             ("technique", "Name and settings"),
             ("silhouette", "Mean difference of visibility over the silhouette pixels"),
             ("half in shadow", "Mean difference over the pixels that are neither lit nor dark"),
-            ("valid", "Samples that the validity mask leaves, mean over silhouette pixels; the paper: 18.5 of 32 on its bumpy receiver"),
+            (
+                "valid",
+                "Samples that the validity mask leaves, mean over silhouette pixels; the paper: 18.5 of 32 on its bumpy receiver",
+            ),
             ("valid, half in shadow", "The same over pixels that are neither lit nor dark"),
             ("pixels", "Silhouette pixels"),
         ];
@@ -162,7 +165,13 @@ impl Compared {
             let off = text::figure(c.over_silhouette);
             let names = [c.spec.trim_end_matches(",statistics=true"), "rays", "10 x the difference"];
             let remarks = [c.scene.clone(), c.scene.clone(), format!("{off} over silhouettes")];
-            names.into_iter().map(str::to_owned).zip(remarks).zip(c.pictures).map(|((n, r), p)| (n, r, p)).collect::<Vec<_>>()
+            names
+                .into_iter()
+                .map(str::to_owned)
+                .zip(remarks)
+                .zip(c.pictures)
+                .map(|((n, r), p)| (n, r, p))
+                .collect::<Vec<_>>()
         });
         parts.push(Part {
             title: "Ours, rays, ten times the difference (figure 8)".into(),

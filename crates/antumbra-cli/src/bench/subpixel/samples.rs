@@ -45,8 +45,7 @@ pub fn part(trials: &[Trial]) -> Part {
             .collect();
         Curve { label: label.into(), color, dashed: color > 0, points }
     };
-    let curves =
-        vec![curve(0, "subpixel", &OURS, table::spec), curve(1, "alias-free, supersampled", &BRUTE, brute)];
+    let curves = vec![curve(0, "subpixel", &OURS, table::spec), curve(1, "alias-free, supersampled", &BRUTE, brute)];
     Part {
         title: "Milliseconds over samples (figure 10)".into(),
         text: "The paper, pterosaur: supersampling grows with the samples, to about 180 ms at 32 and 350 ms at 64; \

@@ -44,7 +44,14 @@ const ROWS: [Row; 7] = [
 /// Passes of the three stages.
 const STAGES: [&[&str]; 3] = [
     &["cluster culling", "depth map", "silhouette mask"],
-    &["facets", "lists of receivers", "light triangles", "triangle-block pairs", "triangle-texel pairs", "order of pairs"],
+    &[
+        "facets",
+        "lists of receivers",
+        "light triangles",
+        "triangle-block pairs",
+        "triangle-texel pairs",
+        "order of pairs",
+    ],
     &["shadow tests", "visibility"],
 ];
 

@@ -71,7 +71,13 @@ impl SilhouetteMask {
 
     /// Marks the texels that the silhouettes of what `map` holds pass, and counts them over all rectangles. `map` has
     /// been drawn from the light's centre and is of the mask's size.
-    pub fn record(&self, recorder: &mut Recorder, frame: &Frame, map: &DepthMap, marking: Marking) -> Result<(), Error> {
+    pub fn record(
+        &self,
+        recorder: &mut Recorder,
+        frame: &Frame,
+        map: &DepthMap,
+        marking: Marking,
+    ) -> Result<(), Error> {
         let adjacency = frame.casters.adjacency(recorder.gpu)?;
         let value = SilhouetteUniform {
             light_from_world: light_from_world(&frame.light).as_mat4(),

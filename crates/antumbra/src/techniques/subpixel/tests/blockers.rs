@@ -79,7 +79,8 @@ fn the_shadow_of_a_triangle_is_what_rays_find_but_for_the_nearest_line() {
         .map(|i| {
             let seen = random_seen(&mut random);
             // A third of the triangles reach through the light's plane or lie behind it, a third through the facet's.
-            let at = seen.position * random.within(if i % 3 == 0 { -0.5 } else { 0.3 }, if i % 3 == 1 { 1.1 } else { 0.9 });
+            let at =
+                seen.position * random.within(if i % 3 == 0 { -0.5 } else { 0.3 }, if i % 3 == 1 { 1.1 } else { 0.9 });
             let reach = if i % 3 == 0 { 6.0 } else { random.within(0.02, 1.0) };
             let corner = |random: &mut Random| {
                 let p = at + random.point(DVec3::splat(-reach), DVec3::splat(reach));
@@ -92,7 +93,8 @@ fn the_shadow_of_a_triangle_is_what_rays_find_but_for_the_nearest_line() {
     for ((seen, t), [mask, invalid]) in cases.iter().zip(shadows(&pattern, &cases)) {
         assert_eq!(invalid & 1, 0, "the middle is always valid: {seen:?}, {t:?}");
         // Angle that a pixel spans, seen from the light.
-        let pixel = seen.across.length().max(seen.down.length()) / seen.normal.dot((seen.eye - seen.position).normalize());
+        let pixel =
+            seen.across.length().max(seen.down.length()) / seen.normal.dot((seen.eye - seen.position).normalize());
         for (i, s) in pattern.samples().iter().enumerate() {
             let Some(p) = seen.place(*s).filter(|p| p.z > 0.01) else { continue };
             let (is_hidden, by) = hidden(p, *t);

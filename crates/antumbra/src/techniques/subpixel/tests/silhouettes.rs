@@ -20,8 +20,14 @@ fn scene(meshes: Vec<Mesh>) -> Scene {
         size: Vec2::ZERO,
         shadow_fov_deg: Some(60.0),
     };
-    let camera =
-        Camera { eye: Vec3::new(0.0, 3.0, 6.0), target: Vec3::ZERO, up: Vec3::Y, fov_y_deg: 45.0, near: 0.1, far: 50.0 };
+    let camera = Camera {
+        eye: Vec3::new(0.0, 3.0, 6.0),
+        target: Vec3::ZERO,
+        up: Vec3::Y,
+        fov_y_deg: 45.0,
+        near: 0.1,
+        far: 50.0,
+    };
     Scene { name: "test".into(), meshes, materials: vec![Material::default()], instances, camera, light, size: None }
 }
 
@@ -174,5 +180,8 @@ fn silhouettes_that_lie_deep_in_shadow_are_left_out() {
     let alone = marked(&scene(vec![lid.clone()]), 128, true).0.number();
     let both = |hide| marked(&scene(vec![lid.clone(), cuboid()]), 128, hide).0.number();
     let (shown, hidden) = (both(false), both(true));
-    assert!(shown > alone + 40 && hidden == alone, "the lid {alone}, with the box {shown}, less what is hidden {hidden}");
+    assert!(
+        shown > alone + 40 && hidden == alone,
+        "the lid {alone}, with the box {shown}, less what is hidden {hidden}"
+    );
 }
