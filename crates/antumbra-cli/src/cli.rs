@@ -3,6 +3,7 @@
 use crate::bench::{self, Suite};
 use crate::output::{ValuesFile, npy_path, png_path};
 use crate::study::rho;
+use antumbra::settings::SpecError;
 use antumbra::{AdapterChoice, Spec, techniques::TECHNIQUES};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -210,8 +211,29 @@ impl FromStr for Technique {
     type Err = antumbra::settings::SpecError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        text.parse().map(Technique)
+        let spec: Spec = with_files(text)?.parse()?;
+        Ok(Technique(Spec { text: text.to_owned(), ..spec }))
     }
+}
+
+/// A SPEC with what is written `key=@FILE` replaced by what is in the file: a point a line, as settings of points take.
+fn with_files(text: &str) -> Result<String, SpecError> {
+    let Some((name, values)) = text.split_once(':').filter(|(_, values)| values.contains("=@")) else {
+        return Ok(text.to_owned());
+    };
+    let part = |part: &str| {
+        let Some((key, file)) = part.split_once("=@") else { return Ok(part.to_owned()) };
+        let unread = |e: std::io::Error| SpecError::Value {
+            technique: name.to_owned(),
+            key: key.trim().to_owned(),
+            value: format!("@{file}"),
+            expected: format!("cannot read {file}: {e}"),
+        };
+        let lines = std::fs::read_to_string(file.trim()).map_err(unread)?;
+        Ok(format!("{key}={}", lines.trim().replace(',', " ").replace('\n', ";")))
+    };
+    let parts: Vec<String> = values.split(',').map(part).collect::<Result<_, _>>()?;
+    Ok(format!("{name}:{}", parts.join(",")))
 }
 
 /// One technique, or all.
@@ -268,6 +290,21 @@ mod tests {
     #[test]
     fn the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn points_are_read_from_a_file() {
+        let file = std::env::temp_dir().join(format!("points-{}.txt", std::process::id()));
+        std::fs::write(&file, "0.5 0.5\n0.25, 0.75\n").expect("a folder for temporary files");
+        let text = format!("subpixel:map=256,points=@{}", file.display());
+        let read = text.parse::<Technique>().unwrap_or_else(|e| panic!("{e}")).0;
+        assert_eq!(
+            (read.settings["points"].clone(), read.text),
+            (serde_json::json!([[0.5, 0.5], [0.25, 0.75]]), text.clone())
+        );
+        std::fs::remove_file(&file).expect("was just written");
+        let error = text.parse::<Technique>().expect_err("the file is gone").to_string();
+        assert!(error.contains("cannot read") && error.contains("points"), "{error}");
     }
 
     #[test]

@@ -58,7 +58,9 @@ impl CliError {
         match self {
             CliError::Stopped | CliError::Reference(ReferenceError::Cancelled) => 130,
             CliError::Unwritable { .. } | CliError::Scene(_) | CliError::Reference(_) => 2,
-            CliError::Gpu(E::UnknownAdapter { .. } | E::Size { .. } | E::Spec(_) | E::Casters { .. }) => 2,
+            CliError::Gpu(
+                E::UnknownAdapter { .. } | E::Size { .. } | E::Spec(_) | E::Casters { .. } | E::Pattern { .. },
+            ) => 2,
             CliError::Metrics { source: MetricsError::NothingValid, .. } => 2,
             CliError::Gpu(_) | CliError::Metrics { .. } | CliError::Report(_) | CliError::Write { .. } => 1,
         }

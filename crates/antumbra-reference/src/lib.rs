@@ -23,6 +23,6 @@ mod view;
 
 pub mod cache;
 
-pub use picture::{Reference, ReferenceError, Settings, trace};
+pub use picture::{Reference, ReferenceError, Settings, trace, trace_centre};
 pub use tracer::{Hit, Ray, Tracer};
 pub use view::{Pixel, View};

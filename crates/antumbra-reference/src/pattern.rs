@@ -44,6 +44,11 @@ impl Pattern {
         Pattern { sub_pixels: pixel_grid(sub_pixels), light, seed }
     }
 
+    /// One ray to the light's centre from each of these places of the pixel, [0, 1].
+    pub fn at(places: &[Vec2]) -> Pattern {
+        Pattern { sub_pixels: places.to_vec(), ..Pattern::new(places.len() as u32, 1, [false; 2], 0) }
+    }
+
     /// The shuffle of pixel number `index`.
     pub fn shuffle(&self, index: u64) -> Shuffle {
         let h = mix(self.seed, 3 + index);

@@ -114,6 +114,25 @@ pub fn trace(
     Ok(Reference::of_pixels(settings, &rows?.concat()))
 }
 
+/// Traces the hard shadow of the light's centre through given places of every pixel, in parts of a pixel from its upper
+/// left corner: what a technique that samples a pixel at these places has to find.
+///
+/// # Panics
+/// If there are no places.
+pub fn trace_centre(scene: &Scene, size: [u32; 2], places: &[glam::Vec2]) -> Result<Reference, ReferenceError> {
+    assert!(!places.is_empty(), "a pixel without places sees nothing");
+    let settings = Settings {
+        light_samples: places.len() as u32,
+        pixel_samples: places.len() as u32,
+        ..Settings::of_size(size[0], size[1])
+    };
+    check(scene, &settings)?;
+    let tracer = Tracer::new(scene);
+    let view = View::of_centre(&tracer, &scene.camera, &scene.light, size, places);
+    let rows: Vec<Vec<Pixel>> = (0..size[1]).into_par_iter().map(|y| view.rows(y..y + 1)).collect();
+    Ok(Reference::of_pixels(&settings, &rows.concat()))
+}
+
 fn check(scene: &Scene, settings: &Settings) -> Result<(), ReferenceError> {
     let s = settings;
     let named = [

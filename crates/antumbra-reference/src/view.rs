@@ -79,6 +79,19 @@ impl<'a> View<'a> {
         }
     }
 
+    /// The hard shadow of the light's centre: every pixel looks through these places only, each with one shadow ray.
+    pub fn of_centre(
+        tracer: &'a Tracer,
+        camera: &Camera,
+        light: &RectLight,
+        size: [u32; 2],
+        places: &[Vec2],
+    ) -> View<'a> {
+        let point = RectLight { size: Vec2::ZERO, ..*light };
+        let settings = Settings { pixel_samples: 1, ..Settings::of_size(size[0], size[1]) };
+        View { pattern: Pattern::at(places), ..View::new(tracer, camera, &point, &settings) }
+    }
+
     /// The pixels of some rows, row after row, on this thread.
     pub fn rows(&self, rows: Range<u32>) -> Vec<Pixel> {
         let mut buffers = Buffers::default();

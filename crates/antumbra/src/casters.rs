@@ -1,8 +1,10 @@
 //! What is drawn into shadow maps: triangles in the host's buffers or in our own, in clusters that are culled on the GPU.
 
+use crate::passes::adjacency::Adjacency;
 use crate::resource::{Texture, buffer_of, storage_buffer, uniform};
 use crate::{Error, Gpu, gpu_struct};
 use antumbra_scene::Aabb;
+use std::sync::OnceLock;
 
 /// Triangles a cluster: the unit of culling.
 pub const CLUSTER_TRIANGLES: u32 = 128;
@@ -113,6 +115,8 @@ pub(crate) struct Batch {
     pub masked: bool,
     pub textured: bool,
     pub item_count: u32,
+    /// The triangles of each mesh: what may share edges.
+    pub meshes: Vec<std::ops::Range<u32>>,
 }
 
 /// A cluster of one instance: what is culled and drawn. Matches `Item` in `triangles.wesl`.
@@ -162,6 +166,7 @@ pub struct Casters {
     pub(crate) items: wgpu::Buffer,
     pub(crate) item_count: u32,
     pub(crate) cluster_bounds: wgpu::Buffer,
+    adjacency: OnceLock<Adjacency>,
     triangle_count: u64,
     some_only_receive: bool,
     bounds: Aabb,
@@ -192,7 +197,8 @@ impl Casters {
                 textured: u32::from(mesh.mask.is_some()),
             };
             let buffers = [mesh.vertices, mesh.indices.map_or(mesh.vertices, |i| i.buffer), mesh.transforms.buffer];
-            builder.push(layout, buffers.map(Clone::clone), mesh.mask.map(|m| (m.texture, m.sampler)), items);
+            let texture = mesh.mask.map(|m| (m.texture, m.sampler));
+            builder.push(layout, buffers.map(Clone::clone), texture, items, vec![0..mesh.triangle_count]);
             builder.bounds = builder.bounds.union(&mesh.bounds);
             if mesh.role == Role::Caster {
                 builder.occluder_bounds = builder.occluder_bounds.union(&mesh.bounds);
@@ -224,6 +230,17 @@ impl Casters {
     /// World-space box around what is an occluder where the scene is parted ([`Role::Caster`]); empty if nothing is.
     pub fn occluder_bounds(&self) -> Aabb {
         self.occluder_bounds
+    }
+
+    /// Which triangles share an edge, borrowed meshes too: found at the first call, 12 bytes a triangle. Vertices that
+    /// were at the same place then are taken to stay together when they move; where they part, borrow the meshes again.
+    pub fn adjacency(&self, gpu: &Gpu) -> Result<&Adjacency, Error> {
+        if self.adjacency.get().is_none() {
+            let found = Adjacency::of(gpu, self)?;
+            // Two threads may have looked for the same.
+            let _ = self.adjacency.set(found);
+        }
+        Ok(self.adjacency.get().expect("just set"))
     }
 
     /// Measures the clusters again after vertices have moved in their buffers.
@@ -273,6 +290,7 @@ impl<'a> CastersBuilder<'a> {
         [vertices, indices, transforms]: [wgpu::Buffer; 3],
         texture: Option<(&wgpu::TextureView, &wgpu::Sampler)>,
         items: impl Iterator<Item = Item>,
+        meshes: Vec<std::ops::Range<u32>>,
     ) {
         layout.first_item = self.words.len() as u32;
         for item in items {
@@ -293,6 +311,7 @@ impl<'a> CastersBuilder<'a> {
             masked: layout.alpha_cutoff > 0.0,
             textured: layout.textured != 0,
             item_count: layout.item_count,
+            meshes,
         });
     }
 
@@ -304,6 +323,7 @@ impl<'a> CastersBuilder<'a> {
             item_count: self.batches.iter().map(|b| b.item_count).sum(),
             cluster_bounds: storage_buffer(self.gpu, "cluster bounds", words.len() as u64 * 32),
             batches: self.batches,
+            adjacency: OnceLock::new(),
             triangle_count: self.triangle_count,
             some_only_receive: self.some_only_receive,
             bounds: self.bounds,

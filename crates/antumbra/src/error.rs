@@ -69,4 +69,10 @@ pub enum Error {
         /// What is wrong and what would be right.
         message: String,
     },
+    /// A pattern of samples that cannot be used.
+    #[error("`points`: {message}")]
+    Pattern {
+        /// What is wrong and what would be right.
+        message: String,
+    },
 }

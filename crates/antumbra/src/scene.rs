@@ -129,6 +129,7 @@ fn push_batch(
     meshes: &[usize],
 ) {
     let (mut words, mut indices, mut transforms, mut items) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let mut ranges = Vec::new();
     let stride = if textured.is_some() { 5 } else { 3 };
     for &m in meshes {
         let mesh = &scene.meshes[m];
@@ -136,6 +137,7 @@ fn push_batch(
         let first = (indices.len() / 3) as u32;
         push_vertices(&mut words, mesh, textured.is_some());
         indices.extend(clustered(mesh).into_iter().flatten().map(|i| i + base));
+        ranges.push(first..(indices.len() / 3) as u32);
         let color = srgb(scene.materials[mesh.material].base_color.truncate());
         for role in [Role::Caster, Role::Ground, Role::Receiver] {
             let placed = scene.instances.iter().zip(roles).filter(|(i, r)| i.mesh == m && **r == role);
@@ -174,6 +176,7 @@ fn push_batch(
         ],
         texture.as_ref().map(|(view, sampler)| (view, sampler)),
         items.into_iter(),
+        ranges,
     );
 }
 

@@ -41,6 +41,11 @@ pub enum Kind {
         /// The words.
         options: &'static [&'static str],
     },
+    /// Points of the unit square, `x y;x y;...`, or one a line as a file has them.
+    Points {
+        /// Most points.
+        max: u32,
+    },
 }
 
 /// A settings struct made by [`settings!`](crate::settings!).
@@ -197,7 +202,20 @@ fn parse_value(kind: Kind, text: &str) -> Result<Value, String> {
             let found = options.iter().find(|o| **o == text).map(|o| Value::from(*o));
             found.ok_or_else(|| format!("expected one of {}", options.join(", ")))
         }
+        Kind::Points { max } => parse_points(text, max as usize),
     }
+}
+
+fn parse_points(text: &str, max: usize) -> Result<Value, String> {
+    let mut points = Vec::new();
+    for (i, point) in text.split([';', '\n']).map(str::trim).filter(|p| !p.is_empty()).enumerate() {
+        let numbers: Option<Vec<f32>> = point.split_whitespace().map(|n| n.parse().ok()).collect();
+        let pair = numbers.filter(|n| n.len() == 2 && n.iter().all(|v| (0.0..=1.0).contains(v)));
+        let expected = || format!("point {} is `{point}`: expected two numbers from 0 to 1", i + 1);
+        points.push(Value::from(pair.ok_or_else(expected)?));
+    }
+    let few = (1..=max).contains(&points.len());
+    if few { Ok(Value::from(points)) } else { Err(format!("expected 1 to {max} points, not {}", points.len())) }
 }
 
 #[cfg(test)]
@@ -207,13 +225,18 @@ mod tests {
     const FIELDS: &[Setting] = &[
         Setting { key: "map", help: "", kind: Kind::Integer { min: 1, max: 100 } },
         Setting { key: "width", help: "", kind: Kind::Number { min: 0.0, max: 1.0 } },
+        Setting { key: "points", help: "", kind: Kind::Points { max: 2 } },
         Setting { key: "lookup", help: "", kind: Kind::Choice { options: &["nearest", "linear"] } },
     ];
 
     #[test]
     fn values_are_typed_and_ranged() {
-        let v = parse_values("t", FIELDS, "map=7, width=0.5,lookup=linear").unwrap();
-        assert_eq!(Value::Object(v), serde_json::json!({"map": 7, "width": 0.5, "lookup": "linear"}));
+        let v = parse_values("t", FIELDS, "map=7, width=0.5,lookup=linear,points=0.5 0.5;\n 1 0.25\n").unwrap();
+        let points = serde_json::json!([[0.5, 0.5], [1.0, 0.25]]);
+        assert_eq!(Value::Object(v), serde_json::json!({"map": 7, "width": 0.5, "lookup": "linear", "points": points}));
+        for bad in ["points=", "points=0.5", "points=0 0;1 1;0 1", "points=0 2", "points=0 x"] {
+            assert!(parse_values("t", FIELDS, bad).is_err(), "{bad} must be refused");
+        }
         for bad in ["map=0", "map=101", "map=-1", "map=x", "width=nan", "width=2", "lookup=cubic", "map", "map=1,map=2"]
         {
             assert!(parse_values("t", FIELDS, bad).is_err(), "{bad} must be refused");

@@ -7,6 +7,7 @@ mod backprojection;
 pub mod kit;
 mod pvssm;
 mod ssm;
+mod subpixel;
 mod vsm;
 
 use crate::error::CliError;
@@ -14,7 +15,8 @@ use antumbra::settings::nearest;
 use kit::{Findings, Lab};
 
 /// Every suite.
-pub const SUITES: &[Suite] = &[adaptive::SUITE, backprojection::SUITE, pvssm::SUITE, ssm::SUITE, vsm::SUITE];
+pub const SUITES: &[Suite] =
+    &[adaptive::SUITE, backprojection::SUITE, pvssm::SUITE, ssm::SUITE, subpixel::SUITE, vsm::SUITE];
 
 /// What is measured of a paper.
 #[derive(Debug)]

@@ -52,6 +52,7 @@ fn values_of(setting: &Setting) -> String {
         Kind::Number { min, max } => format!("{min} to {max}"),
         Kind::Toggle => "true, false".to_owned(),
         Kind::Choice { options } => options.join(", "),
+        Kind::Points { max } => format!("up to {max} points `x y;x y;...`, or @FILE with one a line"),
     }
 }
 

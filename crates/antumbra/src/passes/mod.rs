@@ -1,5 +1,6 @@
 //! What several techniques share.
 
+pub mod adjacency;
 pub mod classify;
 pub mod cluster_bounds;
 pub mod compact;
@@ -16,6 +17,7 @@ pub mod moments;
 pub mod patch_pyramid;
 pub mod picture;
 pub mod scan;
+pub mod silhouette;
 pub mod sort;
 pub mod sparse;
 pub mod summed_area;

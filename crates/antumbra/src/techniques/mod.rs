@@ -21,6 +21,7 @@ pub mod pvssm;
 pub mod savsm;
 pub mod smooth_pcss;
 pub mod ssm;
+pub mod subpixel;
 pub mod summed;
 pub mod uniform_sampling;
 pub mod vsm;
@@ -45,6 +46,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<packet::Packet>(),
     entry::<pvssm::Pvssm>(),
     entry::<fvsm::Fvsm>(),
+    entry::<subpixel::Subpixel>(),
     entry::<uniform_sampling::UniformSampling>(),
     entry::<adaptive_sampling::AdaptiveSampling>(),
     entry::<alias_free::AliasFree>(),

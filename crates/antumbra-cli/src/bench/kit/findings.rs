@@ -3,6 +3,7 @@
 use super::Trial;
 use crate::measure::Timing;
 use crate::report::{Lines, Point};
+use antumbra_metrics::RgbImage;
 use serde::Serialize;
 
 /// All that a suite hands in.
@@ -33,6 +34,8 @@ pub enum Shown {
     Pictures(Vec<usize>),
     /// What the techniques of a trial (its place in [`Findings::trials`]) made, if that was kept, beside the truth.
     Runs(usize),
+    /// Pictures of any kind, side by side: a name, a remark, the picture.
+    Gallery(Vec<(String, String, RgbImage)>),
     /// A table.
     Table(Table),
     /// Curves.

@@ -20,6 +20,7 @@ pub fn html(context: &Context, findings: &Findings) -> Result<String, ReportErro
                     @match shown {
                         Shown::Pictures(of) => (pictures_of(findings, of, &thumbnails)),
                         Shown::Runs(of) => (galleries[*of]),
+                        Shown::Gallery(pictures) => (gallery(pictures)?),
                         Shown::Table(table) => (drawn_table(table)),
                         Shown::Lines(curves) => (lines::plot(curves)),
                         Shown::Scatter(of) => (plot::scatter(&of.points, &of.groups)),
@@ -91,6 +92,20 @@ fn runs_of(trial: &Trial) -> Result<Markup, ReportError> {
                         b { (spelled(name)) }
                         @if let Some(rmse) = rmse { span { "RMSE " (text::figure(*rmse)) } }
                     }
+                }
+            }
+        }
+    })
+}
+
+fn gallery(pictures: &[(String, String, RgbImage)]) -> Result<Markup, ReportError> {
+    let shown: Vec<_> = pictures.iter().map(|(_, _, image)| embedded(image)).collect::<Result<_, _>>()?;
+    Ok(html! {
+        div.gallery.scenes {
+            @for ((name, remark, image), source) in pictures.iter().zip(&shown) {
+                figure {
+                    img src=(source) width=(image.width) height=(image.height) alt=(name);
+                    figcaption { b { (spelled(name)) } span { (remark) } }
                 }
             }
         }

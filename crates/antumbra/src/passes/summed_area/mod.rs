@@ -2,6 +2,7 @@
 
 use crate::passes::light_depth::LightDepth;
 use crate::passes::moments::DepthWarp;
+use crate::pipeline::Binding;
 use crate::recorder::{Recorder, Work};
 use crate::resource::{Texture, storage_buffer};
 use crate::shader::ShaderKey;
@@ -46,11 +47,21 @@ pub struct SummedArea {
 impl SummedArea {
     /// An empty table.
     pub fn new(gpu: &Gpu, shape: TableShape) -> Result<SummedArea, Error> {
-        gpu.check_size("summed-area table", shape.size, shape.size)?;
         let format = match shape.sums {
             Sums::Fixed => wgpu::TextureFormat::Rgba32Uint,
             Sums::Float | Sums::Offset => wgpu::TextureFormat::Rgba32Float,
         };
+        SummedArea::stored(gpu, shape, format)
+    }
+
+    /// An empty table of a mask of `size` bits a side; see `shaders/mask_counts.wesl`.
+    pub fn of_mask(gpu: &Gpu, size: u32) -> Result<SummedArea, Error> {
+        let shape = TableShape { size, layers: 1, sums: Sums::Fixed };
+        SummedArea::stored(gpu, shape, wgpu::TextureFormat::R32Uint)
+    }
+
+    fn stored(gpu: &Gpu, shape: TableShape, format: wgpu::TextureFormat) -> Result<SummedArea, Error> {
+        gpu.check_size("summed-area table", shape.size, shape.size)?;
         let usage =
             wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
         let texture = |label| Texture::array(gpu, label, [shape.size; 2], shape.layers, 1, format, usage);
@@ -96,14 +107,32 @@ impl SummedArea {
             let set = [&source[..], bindings! { mean_of_layer: &self.means }].concat();
             recorder.compute("summed-area table", &average, &set, Work::Groups([layers, 1, 1]));
         }
-        let along_rows = recorder.gpu.compute_pipeline(&key("passes::summed_area::prefix"), "sum_lines")?;
-        let down = key("passes::summed_area::prefix").feature("columns", true);
-        let down_columns = recorder.gpu.compute_pipeline(&down, "sum_lines")?;
-        let groups = || Work::Groups([self.shape.size.div_ceil(8), 1, layers]);
-        let rows = [&source[..], bindings! { means: &self.means, summed: &self.rows }].concat();
-        recorder.compute("summed-area table", &along_rows, &rows, groups());
+        let means = bindings! { means: &self.means };
+        let set = [&source[..], means].concat();
+        self.record_sums(recorder, "summed-area table", key("passes::summed_area::prefix"), &set)
+    }
+
+    /// Counts the set bits of a mask ([`SummedArea::of_mask`]): a word a 32 texels of a row, rows one after the other.
+    pub fn record_counts(&self, recorder: &mut Recorder, label: &str, mask: &wgpu::Buffer) -> Result<(), Error> {
+        let key = ShaderKey::new("passes::summed_area::prefix").feature("counts", true);
+        self.record_sums(recorder, label, key, bindings! { mask: mask })
+    }
+
+    /// Sums along the rows of what `source` binds, then down the columns.
+    fn record_sums(
+        &self,
+        recorder: &mut Recorder,
+        label: &str,
+        key: ShaderKey,
+        source: &[Binding],
+    ) -> Result<(), Error> {
+        let along_rows = recorder.gpu.compute_pipeline(&key, "sum_lines")?;
+        let down_columns = recorder.gpu.compute_pipeline(&key.feature("columns", true), "sum_lines")?;
+        let groups = || Work::Groups([self.shape.size.div_ceil(8), 1, self.shape.layers]);
+        let rows = [source, bindings! { summed: &self.rows }].concat();
+        recorder.compute(label, &along_rows, &rows, groups());
         let columns = bindings! { row_sums: &self.rows, summed: &self.texture };
-        recorder.compute("summed-area table", &down_columns, columns, groups());
+        recorder.compute(label, &down_columns, columns, groups());
         Ok(())
     }
 
