@@ -168,7 +168,7 @@ mod tests {
         let groups = groups.map(|jobs| made(jobs.unwrap()));
         let counts = groups.each_ref().map(Vec::len);
         let found = findings(groups.into_iter().flatten().collect(), counts, &antialiasing::Smoothed::made_up());
-        assert_eq!(found.parts.len(), 7, "tables 1 and 2, figures 8, 10, 11, 13, curves");
+        assert_eq!(found.parts.len(), 6, "tables 1 and 2, figures 8, 10 and 11, curves");
         assert!(found.parts.iter().all(|part| !part.shown.is_empty() && !part.text.is_empty()));
         assert!(found.ratios.iter().all(|ratio| ratio.paper.is_some() && ratio.ours.is_finite()));
         assert!(found.lead.contains("paper"), "{}", found.lead);
