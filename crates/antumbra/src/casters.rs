@@ -198,7 +198,13 @@ impl Casters {
             };
             let buffers = [mesh.vertices, mesh.indices.map_or(mesh.vertices, |i| i.buffer), mesh.transforms.buffer];
             let texture = mesh.mask.map(|m| (m.texture, m.sampler));
-            builder.push(layout, buffers.map(Clone::clone), texture, items, vec![0..mesh.triangle_count]);
+            builder.push(
+                layout,
+                buffers.map(Clone::clone),
+                texture,
+                items,
+                std::iter::once(0..mesh.triangle_count).collect(),
+            );
             builder.bounds = builder.bounds.union(&mesh.bounds);
             if mesh.role == Role::Caster {
                 builder.occluder_bounds = builder.occluder_bounds.union(&mesh.bounds);
