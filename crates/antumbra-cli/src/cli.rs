@@ -28,6 +28,9 @@ pub enum Command {
     /// Measure the tables and curves of papers anew, theirs beside ours
     #[command(after_help = bench::list())]
     Bench(BenchArgs),
+    /// Look at techniques in a window: side by side, or beside the truth
+    #[cfg(feature = "viewer")]
+    View(ViewArgs),
     /// List the techniques, their settings and where they come from
     Techniques(ListArgs),
     /// List the built-in scenes and their parameters
@@ -111,6 +114,26 @@ pub struct BenchArgs {
     pub truth: TruthArgs,
     #[command(flatten)]
     pub gpu: GpuArgs,
+}
+
+/// `antumbra view`.
+#[cfg(feature = "viewer")]
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// A .glb, .gltf, .obj or .ply file, a scene file (.toml or .json), or builtin:NAME [default: builtin:fence]
+    pub scene: Option<String>,
+    /// Technique and its settings, name:key=value,key=value; one stands beside the truth, two beside each other
+    #[arg(short, long = "technique", value_name = "SPEC")]
+    pub techniques: Vec<Technique>,
+    /// Size of the window in points [default: 1440x900]
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Part of an adapter's name, or its number in `antumbra adapters` [default: the best]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub adapter: Option<AdapterChoice>,
+    /// Take commands from standard input, a JSON object a line, and answer each by a line
+    #[arg(long)]
+    pub commands: bool,
 }
 
 /// `antumbra techniques`, `scenes` and `adapters`.

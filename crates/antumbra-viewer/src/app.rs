@@ -93,6 +93,14 @@ impl App {
         Ok(app)
     }
 
+    /// True once the device is gone. It tells only those who ask.
+    fn is_lost(&self) -> bool {
+        #[cfg(not(target_arch = "wasm32"))]
+        // Whether it is there is heard by the callback.
+        let _ = self.session.gpu.device.poll(wgpu::PollType::Poll);
+        self.lost.load(Ordering::Relaxed)
+    }
+
     /// What is on the screen, as text.
     fn state(&self, pixels_per_point: f32) -> State {
         let (desk, session) = (&self.kept.desk, &self.session);
@@ -279,14 +287,10 @@ impl eframe::App for App {
     }
 
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
-        if self.lost.load(Ordering::Relaxed) && !self.kept.again {
-            self.kept.again = true;
-            self.kept.lost += 1;
+        if self.is_lost() {
             crate::restart(ctx);
+            return;
         }
-        // Callbacks of finished work come from here where a window does not draw.
-        #[cfg(not(target_arch = "wasm32"))]
-        let _ = self.session.gpu.device.poll(wgpu::PollType::Poll);
         for message in self.session.work(&mut self.kept.desk) {
             if message != "cancelled" {
                 self.memory.notices.error(message);
@@ -296,7 +300,7 @@ impl eframe::App for App {
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
-        if self.kept.again {
+        if self.is_lost() {
             return;
         }
         let ctx = ui.ctx().clone();
@@ -309,6 +313,11 @@ impl eframe::App for App {
             self.memory.notices.error(fault.as_str());
         }
         self.memory.faults_shown = faults.len();
+        if self.is_lost() {
+            // egui's renderer panics where it has something to draw and no device: it gets nothing.
+            ctx.graphics_mut(|layers| *layers = Default::default());
+            ctx.request_repaint();
+        }
     }
 
     #[cfg(target_arch = "wasm32")]
@@ -320,16 +329,17 @@ impl eframe::App for App {
 impl Drop for App {
     /// Hands back what outlives the device.
     fn drop(&mut self) {
-        let nothing = Kept {
+        let lost = self.is_lost();
+        let outlives = Kept {
             desk: self.kept.desk.clone(),
             first: None,
             commands: self.kept.commands.clone(),
             faults: self.kept.faults.clone(),
-            lost: self.kept.lost,
-            again: self.kept.again,
+            lost: self.kept.lost + u32::from(lost),
+            again: lost,
         };
         if let Ok(mut keep) = self.keep.lock() {
-            *keep = Some(nothing);
+            *keep = Some(outlives);
         }
     }
 }

@@ -12,7 +12,7 @@ pub struct Job<T> {
     pub title: String,
     started: Instant,
     status: Status,
-    receiver: Receiver<T>,
+    receiver: Receiver<Result<T, Died>>,
 }
 
 /// What the work says of itself, and whether it shall go on.
@@ -48,12 +48,12 @@ impl<T: Send + 'static> Job<T> {
         let (send, receiver) = channel();
         let status = Status::default();
         let own = status.clone();
-        run(move || async move {
-            let result = work(own).await;
+        let done = move |result| {
             // Nobody waits for it any more: that is what cancelling means.
             let _ = send.send(result);
             wake();
-        });
+        };
+        run(move || work(own), done);
         Job { title: title.into(), started: Instant::now(), status, receiver }
     }
 }
@@ -62,9 +62,9 @@ impl<T> Job<T> {
     /// What came out, once.
     pub fn poll(&self) -> Option<Result<T, Died>> {
         match self.receiver.try_recv() {
-            Ok(result) => Some(Ok(result)),
+            Ok(result) => Some(result),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Err(Died)),
+            Err(TryRecvError::Disconnected) => Some(Err(Died("it went away".to_owned()))),
         }
     }
 
@@ -85,17 +85,92 @@ impl<T> Drop for Job<T> {
     }
 }
 
-/// The work ended without a result: a bug of ours, said on stderr or in the console.
+/// The work ended without a result: a bug of ours, unless the device is lost.
 #[derive(Debug, thiserror::Error)]
-#[error("the work broke off; this is a bug in antumbra, please report it")]
-pub struct Died;
+#[error("the work broke off, which is a bug in antumbra, please report it: {0}")]
+pub struct Died(String);
+
+/// Name of the threads that work.
+#[cfg(not(target_arch = "wasm32"))]
+pub const THREAD: &str = "antumbra job";
 
 #[cfg(not(target_arch = "wasm32"))]
-fn run<F: Future<Output = ()>>(work: impl FnOnce() -> F + Send + 'static) {
-    std::thread::spawn(|| pollster::block_on(work()));
+fn run<T, F: Future<Output = T>>(
+    work: impl FnOnce() -> F + Send + 'static,
+    done: impl FnOnce(Result<T, Died>) + Send + 'static,
+) {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    let work = move || {
+        let result = catch_unwind(AssertUnwindSafe(|| pollster::block_on(work())));
+        done(result.map_err(|panic| {
+            let text = panic.downcast_ref::<String>().cloned();
+            Died(text.or(panic.downcast_ref::<&str>().map(|t| (*t).to_owned())).unwrap_or_default())
+        }));
+    };
+    let started = std::thread::Builder::new().name(THREAD.to_owned()).spawn(work);
+    // Without a thread the channel closes, and the owner says so.
+    drop(started);
 }
 
 #[cfg(target_arch = "wasm32")]
-fn run<F: Future<Output = ()> + 'static>(work: impl FnOnce() -> F + Send + 'static) {
-    wasm_bindgen_futures::spawn_local(work());
+fn run<T: 'static, F: Future<Output = T> + 'static>(
+    work: impl FnOnce() -> F + Send + 'static,
+    done: impl FnOnce(Result<T, Died>) + Send + 'static,
+) {
+    wasm_bindgen_futures::spawn_local(async move { done(Ok(work().await)) });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ended<T>(job: &Job<T>) -> Result<T, Died> {
+        loop {
+            if let Some(result) = job.poll() {
+                return result;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+    }
+
+    #[test]
+    fn a_result_comes_and_a_panic_is_told() {
+        let work = Job::start(
+            "seven",
+            || (),
+            |status| async move {
+                status.step("counting");
+                7
+            },
+        );
+        assert_eq!((ended(&work).unwrap(), work.step().as_str()), (7, "counting"));
+        let broken = Job::start(
+            "broken",
+            || (),
+            |_| async move {
+                if true {
+                    panic!("nothing there")
+                }
+            },
+        );
+        assert!(ended(&broken).unwrap_err().to_string().contains("nothing there"));
+    }
+
+    #[test]
+    fn dropping_a_job_asks_it_to_stop() {
+        let (send, receive) = channel();
+        let job = Job::start(
+            "long",
+            || (),
+            move |status| async move {
+                while status.step("on") {
+                    std::thread::sleep(std::time::Duration::from_millis(1));
+                }
+                // The test waits for this.
+                let _ = send.send(());
+            },
+        );
+        drop(job);
+        receive.recv_timeout(std::time::Duration::from_secs(20)).expect("it ends");
+    }
 }

@@ -9,7 +9,8 @@ use eframe::egui;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use std::collections::VecDeque;
 use std::io::{BufRead, Write};
-use std::sync::{Arc, Mutex};
+use std::panic::{set_hook, take_hook};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// How the viewer is opened.
 #[derive(Default)]
@@ -41,6 +42,7 @@ pub fn run(options: Options) -> Result<(), WindowError> {
     if options.commands {
         listen(commands.clone(), waker.clone());
     }
+    leave_panics_of_jobs_to_their_owners();
     let scene = options.scene.unwrap_or_else(|| FIRST_SCENE.to_owned());
     let keep: Keep = Arc::new(Mutex::new(Some(Kept {
         desk: Desk::new(&options.specs),
@@ -60,12 +62,22 @@ pub fn run(options: Options) -> Result<(), WindowError> {
             App::new(context, kept).map(|app| Box::new(app) as Box<dyn eframe::App>).map_err(Into::into)
         });
         eframe::run_native("antumbra", native, creator).map_err(|e| WindowError(e.to_string()))?;
-        let Ok(mut kept) = keep.lock() else { return Ok(()) };
+        let mut kept = keep.lock().unwrap_or_else(PoisonError::into_inner);
         match kept.as_mut().filter(|k| k.again) {
             Some(kept) => kept.again = false,
             None => return Ok(()),
         }
     }
+}
+
+/// Leaves panics of background work to those who wait for its result; the window's are reported as ever.
+fn leave_panics_of_jobs_to_their_owners() {
+    let usual = take_hook();
+    set_hook(Box::new(move |info| {
+        if std::thread::current().name() != Some(crate::job::THREAD) {
+            usual(info);
+        }
+    }));
 }
 
 /// Ends this window so that another one opens on a fresh device.

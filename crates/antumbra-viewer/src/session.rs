@@ -229,7 +229,9 @@ impl Session {
             let half = &mut self.halves[i];
             let is_truth = i == 1 && desk.compare == Compare::Truth;
             let technique = half.made.as_mut().filter(|_| !is_truth).map(|m| &mut *m.1);
-            let shown = (&self.shown, desk.show, &canvas.truth);
+            // The truth has no error: what it is stands there instead.
+            let show = if is_truth && desk.show == Show::Error { Show::Visibility } else { desk.show };
+            let shown = (&self.shown, show, &canvas.truth);
             if let Err(error) = picture.draw(gpu, &mut half.timer, technique, &canvas.geometry, shown) {
                 half.fail(&error);
             }

@@ -5,6 +5,8 @@ mod compare;
 mod list;
 mod reference;
 mod render;
+#[cfg(feature = "viewer")]
+mod view;
 
 use crate::cli::Command;
 use crate::error::CliError;
@@ -17,6 +19,8 @@ pub fn run(command: &Command) -> Result<(), CliError> {
         Command::Reference(args) => reference::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
+        #[cfg(feature = "viewer")]
+        Command::View(args) => view::run(args),
         Command::Techniques(args) => list::techniques(args.json),
         Command::Scenes(args) => list::scenes(args.json),
         Command::Adapters(args) => list::adapters(args.json),

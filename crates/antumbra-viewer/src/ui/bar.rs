@@ -11,7 +11,7 @@ use eframe::egui::{self, RichText};
 /// The bar.
 pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &mut Memory, wishes: &mut Wishes) {
     egui::MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("Scene ⏷", |ui| scenes(ui, desk, memory, wishes));
+        ui.menu_button("Scene", |ui| scenes(ui, desk, memory, wishes));
         if let Some(open) = &desk.open {
             let triangles = session.stage.as_ref().map_or(0, |s| s.triangles);
             let name = open.scene.name.trim_start_matches("builtin:");
@@ -34,29 +34,26 @@ pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &
         for (value, text, help) in [
             (Show::Picture, "Picture", "The shaded picture (P)"),
             (Show::Visibility, "Visibility", "The part of the light that each pixel sees: white all, black none (V)"),
-            (Show::Error, "Error", "Red where a technique is lighter than the truth, blue where it is darker (E)"),
+            (Show::Error, "Error", "Red where a technique is lighter than the truth, blue where it is darker (X)"),
         ] {
             ui.selectable_value(&mut desk.show, value, text).on_hover_text(help);
         }
         ui.separator();
         let can_turn = session.stage.as_ref().is_some_and(|s| s.has_occluders());
         ui.add_enabled_ui(can_turn, |ui| {
-            let text = if desk.turning { "⏸ Pause" } else { "▶ Turn" };
+            let text = if desk.turning { "Pause" } else { "Turn occluders" };
             if ui.button(text).on_hover_text("Turns what casts shadows (space)").clicked() {
                 desk.turning = !desk.turning;
             }
         });
         if !desk.is_as_opened()
-            && ui
-                .button("⟲ Reset view")
-                .on_hover_text("Camera, light and occluders as the scene has them (R)")
-                .clicked()
+            && ui.button("Reset view").on_hover_text("Camera, light and occluders as the scene has them (R)").clicked()
         {
             reset(desk);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.toggle_value(&mut desk.help, "Help");
-            ui.menu_button("Save ⏷", |ui| saves(ui, desk, wishes));
+            ui.menu_button("Save", |ui| saves(ui, desk, wishes));
         });
     });
 }

@@ -7,6 +7,8 @@ use eframe::egui::{self, Align2, Color32, FontId, Rect, RichText, Sense, Vec2, p
 
 /// Width of a frame's bar, points.
 const BAR: f32 = 3.0;
+/// Width of the list of passes, points.
+const PASSES: f32 = 226.0;
 
 /// A graph for each technique.
 pub fn show(ui: &mut egui::Ui, desk: &Desk, session: &Session) {
@@ -35,16 +37,17 @@ fn one(ui: &mut egui::Ui, half: &Half, index: usize, count: usize) {
     });
     ui.horizontal_top(|ui| {
         let memory = technique.memory();
-        egui::ScrollArea::vertical().id_salt(("passes", index)).max_width(206.0).auto_shrink([false, false]).show(
-            ui,
-            |ui| {
+        ui.vertical(|ui| {
+            ui.set_width(PASSES);
+            let list = egui::ScrollArea::vertical().id_salt(("passes", index)).auto_shrink([false, false]);
+            list.show(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
                 for (k, pass) in half.times.passes.iter().enumerate() {
                     let bytes: u64 = memory.iter().filter(|m| m.pass == pass).map(|m| m.bytes).sum();
                     row(ui, style::pass_color(k), pass, half.times.median(k), bytes);
                 }
-            },
-        );
+            });
+        });
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
         bars(ui, rect, &response, half);
     });

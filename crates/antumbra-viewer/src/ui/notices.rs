@@ -56,7 +56,7 @@ pub fn show(ctx: &egui::Context, area: Option<Rect>, session: &mut Session, noti
     opening(ctx, area, session);
     notices.list.retain(|n| n.is_error || n.since.elapsed() < SHOWN);
     let mut closed = None;
-    egui::Area::new(egui::Id::new("notices"))
+    egui::Area::new(egui::Id::unique("notices"))
         .pivot(Align2::LEFT_BOTTOM)
         .fixed_pos(area.left_bottom() + vec2(10.0, -10.0))
         .constrain_to(area)
@@ -66,7 +66,7 @@ pub fn show(ctx: &egui::Context, area: Option<Rect>, session: &mut Session, noti
                 style::card().show(ui, |ui| {
                     ui.horizontal_top(|ui| {
                         let color = if notice.is_error { style::BAD } else { Color32::from_rgb(160, 220, 170) };
-                        ui.colored_label(color, if notice.is_error { "✖" } else { "✔" });
+                        ui.colored_label(color, if notice.is_error { "Error" } else { "Done" });
                         let times =
                             if notice.count > 1 { format!("  ({} times)", notice.count) } else { String::new() };
                         let text = RichText::new(format!("{}{times}", notice.text)).color(style::ON_PICTURE);
@@ -89,17 +89,20 @@ pub fn show(ctx: &egui::Context, area: Option<Rect>, session: &mut Session, noti
 fn opening(ctx: &egui::Context, area: Rect, session: &mut Session) {
     let Some(job) = &session.opening else { return };
     let mut cancelled = false;
-    egui::Area::new(egui::Id::new("opening")).pivot(Align2::CENTER_CENTER).fixed_pos(area.center()).show(ctx, |ui| {
-        egui::Frame::window(ui.style()).show(ui, |ui| {
-            ui.set_width(300.0);
-            ui.horizontal(|ui| {
-                ui.spinner();
-                ui.add(egui::Label::new(RichText::new(&job.title).strong()).truncate());
+    egui::Area::new(egui::Id::unique("opening")).pivot(Align2::CENTER_CENTER).fixed_pos(area.center()).show(
+        ctx,
+        |ui| {
+            egui::Frame::window(ui.style()).show(ui, |ui| {
+                ui.set_width(300.0);
+                ui.horizontal(|ui| {
+                    ui.spinner();
+                    ui.add(egui::Label::new(RichText::new(&job.title).strong()).truncate());
+                });
+                ui.label(format!("{} …   {:.0} s", job.step(), job.seconds()));
+                cancelled = ui.button("Cancel").clicked();
             });
-            ui.label(format!("{} …   {:.0} s", job.step(), job.seconds()));
-            cancelled = ui.button("Cancel").clicked();
-        });
-    });
+        },
+    );
     ctx.request_repaint_after(Duration::from_millis(120));
     if cancelled {
         session.opening = None;

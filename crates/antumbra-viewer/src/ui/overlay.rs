@@ -42,12 +42,10 @@ fn label(ui: &egui::Ui, area: Rect, corner: Pos2, pivot: Align2, content: impl F
 fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: usize) {
     ui.set_max_width(280.0);
     let choice = &mut desk.choices[half];
-    let name = RichText::new(format!("{} ⏷", choice.technique.name)).strong().size(15.0).color(style::ON_PICTURE);
-    let button = egui::Button::new(name).frame(false);
-    egui::containers::menu::MenuButton::from_button(button)
-        .ui(ui, |ui| panel::pick(ui, choice))
-        .0
-        .on_hover_text("Another technique");
+    let name = RichText::new(choice.technique.name).strong().size(15.0).color(style::ON_PICTURE);
+    let button = egui::Button::new((name, egui::containers::menu::SubMenuButton::arrow_atom(None))).frame(false);
+    let menu = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| panel::pick(ui, choice));
+    menu.0.on_hover_text("Another technique");
     ui.label(RichText::new(choice.technique.title).small().color(Color32::from_gray(190)));
     let state = &mut session.halves[half];
     let mut facts = Vec::new();

@@ -334,6 +334,7 @@ fn paint_handle(painter: &egui::Painter, handle: Handle, center: Pos2, at: Pos2,
             painter.circle(at, 6.0 + grow, fill, dark);
         }
         Handle::Aim => {
+            painter.circle_stroke(at, 6.5 + grow, Stroke::new(4.5, Color32::from_black_alpha(130)));
             painter.circle_stroke(at, 6.5 + grow, Stroke::new(2.0, fill));
             painter.circle_filled(at, 2.2, fill);
         }
@@ -342,7 +343,8 @@ fn paint_handle(painter: &egui::Painter, handle: Handle, center: Pos2, at: Pos2,
 
 /// A small arrow at the rim towards a light that is out of the picture.
 fn point_to(painter: &egui::Painter, area: Rect, center: Pos2) {
-    let inner = area.shrink(22.0);
+    // The corners have labels.
+    let inner = area.shrink(22.0).with_min_y(area.top() + 100.0);
     let at = inner.clamp(center);
     let direction = (center - at).normalized();
     let side = direction.rot90() * 7.0;
@@ -352,11 +354,8 @@ fn point_to(painter: &egui::Painter, area: Rect, center: Pos2) {
         style::ACCENT,
         Stroke::new(1.5, Color32::from_black_alpha(160)),
     ));
-    painter.text(
-        back - direction * 14.0,
-        egui::Align2::CENTER_CENTER,
-        "light",
-        egui::FontId::proportional(11.0),
-        style::ACCENT,
-    );
+    let text = painter.layout_no_wrap("light".to_owned(), egui::FontId::proportional(12.0), style::ACCENT);
+    let rect = Rect::from_center_size(back - direction * 20.0, text.size() + vec2(10.0, 4.0));
+    painter.rect_filled(rect, 4.0, style::SHADE);
+    painter.galley(rect.min + vec2(5.0, 2.0), text, style::ACCENT);
 }
