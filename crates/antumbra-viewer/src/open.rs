@@ -1,7 +1,7 @@
 //! Opening a scene in the background: a built-in one, a file, or bytes that were dropped on a web page.
 
 use crate::desk::Open;
-use crate::job::{Job, Status};
+use crate::job::Job;
 use crate::stage::Stage;
 use antumbra::Gpu;
 use antumbra_scene::{Scene, load};
@@ -14,6 +14,9 @@ pub enum Source {
     Argument(String),
     /// A file's name and what is in it, where there is no path.
     Bytes(String, Vec<u8>),
+    /// A file that was dropped on a page, which gives its bytes in its own time.
+    #[cfg(target_arch = "wasm32")]
+    Dropped(eframe::egui::DroppedFileHandle),
     /// A scene that was open before, and its argument: the device was lost.
     Again(Open),
 }
@@ -29,6 +32,8 @@ pub fn start(
     let title = match &source {
         Source::Argument(name) | Source::Bytes(name, _) => name.clone(),
         Source::Again(open) => open.source.clone(),
+        #[cfg(target_arch = "wasm32")]
+        Source::Dropped(file) => file.path().display().to_string(),
     };
     let told = wake.clone();
     Job::start(title, wake, move |status| async move {
@@ -38,7 +43,12 @@ pub fn start(
             if goes_on { Ok(()) } else { Err("cancelled".to_owned()) }
         };
         say("Reading")?;
-        let open = read(source, &status)?;
+        #[cfg(target_arch = "wasm32")]
+        let source = match source {
+            Source::Dropped(file) => Source::Bytes(file.path().display().to_string(), file.bytes_async().await?),
+            source => source,
+        };
+        let open = read(source)?;
         let triangles = open.scene.triangle_count();
         say(&format!("Sorting {} triangles for the GPU", thousands(triangles)))?;
         let scene = open.scene.clone();
@@ -48,8 +58,10 @@ pub fn start(
     })
 }
 
-fn read(source: Source, _status: &Status) -> Result<Open, String> {
+fn read(source: Source) -> Result<Open, String> {
     match source {
+        #[cfg(target_arch = "wasm32")]
+        Source::Dropped(_) => Err("its bytes have not come".to_owned()),
         Source::Again(open) => Ok(open),
         Source::Bytes(name, bytes) => {
             let scene = from_bytes(&name, &bytes).map_err(|e| e.to_string())?;

@@ -62,7 +62,10 @@ pub struct Session {
     pub resized: u64,
     shown: Shown,
     tracer: Option<(u64, Arc<Lazy>)>,
-    truth_written: Option<(u64, u64)>,
+    /// Truths that were begun.
+    truths: u64,
+    /// Which truth is uploaded and how much of it, and whether the right half shows it.
+    truth_written: Option<(Option<(u64, u64)>, bool)>,
     poses: u64,
     last: Option<Wanted>,
     changed: Instant,
@@ -109,6 +112,7 @@ impl Session {
             drawn: 0,
             resized: 0,
             tracer: None,
+            truths: 0,
             truth_written: None,
             poses: 0,
             last: None,
@@ -174,9 +178,7 @@ impl Session {
             return Ok(false);
         }
         if self.canvas.as_ref().is_none_or(|c| c.size != size) {
-            let canvas = Canvas::new(&self.gpu, stage, size)?;
-            canvas.forget_truth(&self.gpu);
-            self.canvas = Some(canvas);
+            self.canvas = Some(Canvas::new(&self.gpu, stage, size)?);
             self.resized += 1;
             self.truth_written = None;
         }
@@ -279,6 +281,7 @@ impl Session {
             let (pose, tracer) = known.unwrap_or_else(|| (stage.pose, Arc::new(Lazy::new(stage.posed()))));
             let ctx = self.ctx.clone();
             let wake = move || ctx.request_repaint_after(Duration::from_millis(100));
+            self.truths += 1;
             self.truth = Some(Truth::start(question, tracer.clone(), wake));
             self.tracer = Some((pose, tracer));
         }
@@ -288,24 +291,26 @@ impl Session {
         }
     }
 
-    /// Uploads what has come in of the truth. True if there is more than before.
+    /// Uploads what has come in of the truth, and takes away what was true of another view. True if that changes what is
+    /// seen.
     fn write_truth(&mut self, desk: &Desk) -> bool {
-        let (Some(canvas), Some(truth)) = (&self.canvas, &self.truth) else {
-            // Another view: what is known of the last one is no truth here.
-            let forgotten = self.truth_written.take().is_some();
-            if let Some(canvas) = self.canvas.as_ref().filter(|_| forgotten) {
-                canvas.forget_truth(&self.gpu);
-            }
-            return forgotten;
-        };
-        let Ok(picture) = truth.picture.lock() else { return false };
-        let now = (truth.question.pose, picture.version);
-        if picture.size != canvas.size || self.truth_written == Some(now) || picture.version == 0 {
+        let Some(canvas) = &self.canvas else { return false };
+        let is_shown = desk.compare == Compare::Truth;
+        let picture = self.truth.as_ref().and_then(|t| t.picture.lock().ok());
+        let picture = picture.filter(|p| p.size == canvas.size && p.version > 0);
+        let now = (picture.as_ref().map(|p| (self.truths, p.version)), is_shown);
+        if self.truth_written == Some(now) {
             return false;
         }
-        canvas.write_truth(&self.gpu, &picture);
-        if desk.compare == Compare::Truth {
-            canvas.halves[1].write_visibility(&self.gpu, &picture.visibility);
+        match &picture {
+            Some(picture) => canvas.write_truth(&self.gpu, picture),
+            None => canvas.forget_truth(&self.gpu),
+        }
+        if is_shown {
+            // Where nothing is known yet there is no shadow.
+            let lit = || vec![1.0; canvas.size[0] as usize * canvas.size[1] as usize];
+            let values = picture.as_ref().map_or_else(lit, |p| p.visibility.clone());
+            canvas.halves[1].write_visibility(&self.gpu, &values);
         }
         self.truth_written = Some(now);
         true

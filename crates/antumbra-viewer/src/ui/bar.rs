@@ -70,7 +70,7 @@ fn scenes(ui: &mut egui::Ui, desk: &Desk, memory: &mut Memory, wishes: &mut Wish
     for info in builtin::list() {
         let argument = format!("builtin:{}", info.name);
         let is_open = desk.open.as_ref().is_some_and(|o| o.source == argument);
-        let text = format!("{}   {}", info.name, thousands(info.triangles));
+        let text = format!("{}  ·  {}, {} triangles", info.name, info.title, thousands(info.triangles));
         let button = ui.selectable_label(is_open, text).on_hover_ui(|ui| {
             ui.strong(info.title);
             ui.label(info.description);

@@ -82,7 +82,7 @@ fn bars(ui: &egui::Ui, rect: Rect, response: &egui::Response, half: &Half) {
     let per_ms = (rect.height() - 12.0) / most.max(1e-9) as f32;
     for (age, frame) in half.times.frames.iter().rev().enumerate() {
         let right = rect.right() - age as f32 * BAR;
-        if right < rect.left() + 44.0 {
+        if right < rect.left() + 44.0 || rect.height() < 16.0 {
             break;
         }
         let mut bottom = rect.bottom();

@@ -9,6 +9,10 @@ use eframe::egui::{self, Align2, Color32, FontId, Pos2, Rect, RichText, pos2, ve
 
 /// Labels in the upper corners, and the colour bar below where errors are shown.
 pub fn show(ui: &mut egui::Ui, area: Rect, desk: &mut Desk, session: &mut Session) {
+    // A window may be as small as a title bar.
+    if area.width() < 60.0 || area.height() < 60.0 {
+        return;
+    }
     if session.stage.is_some() {
         let middle = area.left() + area.width() * desk.divider;
         let is_split = desk.compare != Compare::One;

@@ -277,7 +277,8 @@ fn paint_light(ui: &egui::Ui, desk: &Desk, memory: &Memory, screen: &Screen, hov
     let handles = light::handles(light, screen);
     let place = |wanted: Handle| handles.iter().find(|(h, _)| *h == wanted).map(|(_, p)| pos(*p));
     let Some(center) = place(Handle::Move) else { return };
-    if !area.contains(center) {
+    let has_room = area.width() > 80.0 && area.height() > 180.0;
+    if !area.contains(center) && has_room {
         point_to(&painter, area, center);
     }
     if let Some(aim) = place(Handle::Aim) {
