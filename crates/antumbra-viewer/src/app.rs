@@ -1,4 +1,4 @@
-//! The program around the controls, the same in a window and on a page.
+//! The program around the controls.
 
 use crate::commands::{Answer, Command, State, apply};
 use crate::desk::Desk;
@@ -95,7 +95,6 @@ impl App {
 
     /// True once the device is gone. It tells only those who ask.
     fn is_lost(&self) -> bool {
-        #[cfg(not(target_arch = "wasm32"))]
         // Whether it is there is heard by the callback.
         let _ = self.session.gpu.device.poll(wgpu::PollType::Poll);
         self.lost.load(Ordering::Relaxed)
@@ -271,19 +270,13 @@ impl App {
         if files.len() > 1 {
             self.memory.notices.done(format!("{} files were dropped; the first is opened", files.len()));
         }
-        #[cfg(not(target_arch = "wasm32"))]
         self.session.open(Source::Argument(file.path().display().to_string()));
-        #[cfg(target_arch = "wasm32")]
-        self.session.open(Source::Dropped(file.clone()));
     }
 }
 
 impl eframe::App for App {
     fn raw_input_hook(&mut self, _ctx: &egui::Context, input: &mut egui::RawInput) {
-        #[cfg(not(target_arch = "wasm32"))]
         input.dropped_files.extend(self.dropped.drain(..).map(|path| Arc::new(DroppedPath(path)) as _));
-        #[cfg(target_arch = "wasm32")]
-        let _ = input;
     }
 
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
@@ -318,11 +311,6 @@ impl eframe::App for App {
             ctx.graphics_mut(|layers| *layers = Default::default());
             ctx.request_repaint();
         }
-    }
-
-    #[cfg(target_arch = "wasm32")]
-    fn as_any_mut(&mut self) -> Option<&mut dyn std::any::Any> {
-        Some(&mut *self)
     }
 }
 
@@ -364,11 +352,9 @@ fn watch(gpu: &Gpu, ctx: &egui::Context, kept: &Kept, lost: &Arc<AtomicBool>) {
 }
 
 /// A path that came by a command instead of by the mouse.
-#[cfg(not(target_arch = "wasm32"))]
 #[derive(Debug)]
 struct DroppedPath(PathBuf);
 
-#[cfg(not(target_arch = "wasm32"))]
 impl egui::DroppedFile for DroppedPath {
     fn path(&self) -> &std::path::Path {
         &self.0

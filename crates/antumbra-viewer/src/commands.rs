@@ -1,7 +1,6 @@
 //! Commands from outside, a JSON object each: for tests, and for programs that drive the viewer.
 //!
-//! In a window they come on stdin, a line each, with `antumbra view --commands`; each is answered by a line on stdout. On
-//! a page `window.antumbra(json)` takes them.
+//! They come on stdin, a line each, with `antumbra view --commands`; each is answered by a line on stdout.
 
 use crate::choice::Choice;
 use crate::desk::{Compare, Desk, Inside};

@@ -1,10 +1,10 @@
-//! Long work off the frame: a thread in a window, a task between frames on a web page.
+//! Long work off the frame, on threads of its own.
 
 use std::future::Future;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
-use web_time::Instant;
+use std::time::Instant;
 
 /// Work under way. Dropping it asks it to stop; what it still finds is thrown away.
 pub struct Job<T> {
@@ -91,10 +91,8 @@ impl<T> Drop for Job<T> {
 pub struct Died(String);
 
 /// Name of the threads that work.
-#[cfg(not(target_arch = "wasm32"))]
 pub const THREAD: &str = "antumbra job";
 
-#[cfg(not(target_arch = "wasm32"))]
 fn run<T, F: Future<Output = T>>(
     work: impl FnOnce() -> F + Send + 'static,
     done: impl FnOnce(Result<T, Died>) + Send + 'static,
@@ -110,14 +108,6 @@ fn run<T, F: Future<Output = T>>(
     let started = std::thread::Builder::new().name(THREAD.to_owned()).spawn(work);
     // Without a thread the channel closes, and the owner says so.
     drop(started);
-}
-
-#[cfg(target_arch = "wasm32")]
-fn run<T: 'static, F: Future<Output = T> + 'static>(
-    work: impl FnOnce() -> F + Send + 'static,
-    done: impl FnOnce(Result<T, Died>) + Send + 'static,
-) {
-    wasm_bindgen_futures::spawn_local(async move { done(Ok(work().await)) });
 }
 
 #[cfg(test)]

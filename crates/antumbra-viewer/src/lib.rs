@@ -1,4 +1,4 @@
-//! The interactive viewer: techniques side by side, or beside the ray-traced truth, in a window and on a web page.
+//! The interactive viewer: techniques side by side, or beside the ray-traced truth, in a window.
 //!
 //! [`run`] opens the window. [`app`] is the program, [`ui`] its controls, [`session`] what goes on behind them: scenes are
 //! opened ([`open`]), techniques compiled, the truth traced ([`truth`]) and errors measured ([`figures`]) in the background
@@ -17,7 +17,6 @@ mod fitter;
 pub mod inspect;
 pub mod job;
 pub mod light;
-#[cfg(not(target_arch = "wasm32"))]
 mod native;
 pub mod open;
 mod readback;
@@ -28,12 +27,6 @@ pub mod stage;
 pub mod times;
 pub mod truth;
 pub mod ui;
-#[cfg(target_arch = "wasm32")]
-pub mod web;
 
-#[cfg(not(target_arch = "wasm32"))]
 use native::restart;
-#[cfg(not(target_arch = "wasm32"))]
 pub use native::{Options, WindowError, run};
-#[cfg(target_arch = "wasm32")]
-use web::restart;

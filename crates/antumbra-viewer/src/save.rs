@@ -1,4 +1,4 @@
-//! Where what is taken away goes: files beside the program in a window, downloads on a page.
+//! Where what is taken away goes: files in the folder that the program was started in.
 
 use crate::desk::{Compare, Desk};
 use crate::export;
@@ -70,20 +70,11 @@ pub fn free_name(folder: &Path, stem: &str, extension: &str) -> PathBuf {
 }
 
 /// Keeps bytes under a name like this; says where.
-#[cfg(not(target_arch = "wasm32"))]
 pub fn keep(stem: &str, extension: &str, bytes: &[u8]) -> Result<String, String> {
     let folder = std::env::current_dir().unwrap_or_default();
     let path = free_name(&folder, stem, extension);
     std::fs::write(&path, bytes).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
     Ok(path.display().to_string())
-}
-
-/// Keeps bytes under a name like this; says where.
-#[cfg(target_arch = "wasm32")]
-pub fn keep(stem: &str, extension: &str, bytes: &[u8]) -> Result<String, String> {
-    let name = format!("{stem}.{extension}");
-    crate::web::download(&name, bytes).map_err(|_| format!("the browser refused to download {name}"))?;
-    Ok(name)
 }
 
 #[cfg(test)]

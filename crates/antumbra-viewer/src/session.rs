@@ -14,7 +14,7 @@ use antumbra::{Error, Gpu, Recorder, Technique, Timer, View};
 use eframe::egui;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use web_time::{Duration, Instant};
+use std::time::{Duration, Instant};
 
 /// Frames that are drawn after the last change, for techniques that take several to come to rest.
 const SETTLING: u32 = 4;
@@ -285,8 +285,7 @@ impl Session {
             self.truth = Some(Truth::start(question, tracer.clone(), wake));
             self.tracer = Some((pose, tracer));
         }
-        if let Some(truth) = self.truth.as_ref().filter(|t| !t.is_done()) {
-            truth.advance(30);
+        if self.truth.as_ref().is_some_and(|t| !t.is_done()) {
             self.ctx.request_repaint_after(Duration::from_millis(250));
         }
     }

@@ -118,8 +118,7 @@ impl Lazy {
 }
 
 impl Truth {
-    /// Starts tracing: on all cores but one in a window, in [`Truth::advance`] on a web page. `wake` is called when
-    /// there is more to show.
+    /// Starts tracing on all cores but one. `wake` is called when there is more to show.
     pub fn start(question: Question, tracer: Arc<Lazy>, wake: impl Fn() + Clone + Send + 'static) -> Truth {
         let picture = Arc::new(Mutex::new(Picture::empty(question.size)));
         let work = Arc::new(Work {
@@ -142,14 +141,6 @@ impl Truth {
     pub fn is_done(&self) -> bool {
         self.picture.lock().is_ok_and(|p| p.rows.iter().all(|&r| usize::from(r) == LEVELS.len()))
     }
-
-    /// Traces for this many milliseconds where there are no threads.
-    pub fn advance(&self, milliseconds: u64) {
-        if cfg!(target_arch = "wasm32") {
-            let end = web_time::Instant::now() + web_time::Duration::from_millis(milliseconds);
-            while web_time::Instant::now() < end && self.work.row() {}
-        }
-    }
 }
 
 impl Drop for Truth {
@@ -159,7 +150,6 @@ impl Drop for Truth {
 }
 
 impl Work {
-    #[cfg(not(target_arch = "wasm32"))]
     fn spawn(self: &Arc<Self>, wake: impl Fn() + Clone + Send + 'static) {
         let threads = std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).max(1));
         for _ in 0..threads {
@@ -171,9 +161,6 @@ impl Work {
             });
         }
     }
-
-    #[cfg(target_arch = "wasm32")]
-    fn spawn(self: &Arc<Self>, _wake: impl Fn() + Clone + Send + 'static) {}
 
     /// Traces the next row; false if there is none, or nobody wants it.
     fn row(&self) -> bool {

@@ -80,19 +80,17 @@ fn scenes(ui: &mut egui::Ui, desk: &Desk, memory: &mut Memory, wishes: &mut Wish
             ui.close();
         }
     }
-    if cfg!(not(target_arch = "wasm32")) {
-        ui.separator();
-        ui.horizontal(|ui| {
-            let hint = "path of a .glb, .obj, .ply or scene file";
-            let edit = ui.add(egui::TextEdit::singleline(&mut memory.path).hint_text(hint).desired_width(230.0));
-            let enter = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-            let path = memory.path.trim().trim_matches(['"', '\'']).to_owned();
-            if (ui.add_enabled(!path.is_empty(), egui::Button::new("Open")).clicked() || enter) && !path.is_empty() {
-                wishes.open = Some(Source::Argument(path));
-                ui.close();
-            }
-        });
-    }
+    ui.separator();
+    ui.horizontal(|ui| {
+        let hint = "path of a .glb, .obj, .ply or scene file";
+        let edit = ui.add(egui::TextEdit::singleline(&mut memory.path).hint_text(hint).desired_width(230.0));
+        let enter = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
+        let path = memory.path.trim().trim_matches(['"', '\'']).to_owned();
+        if (ui.add_enabled(!path.is_empty(), egui::Button::new("Open")).clicked() || enter) && !path.is_empty() {
+            wishes.open = Some(Source::Argument(path));
+            ui.close();
+        }
+    });
     ui.weak("Or drop a file on the window: .glb, .gltf, .obj, .ply, or a scene file (.toml, .json).");
 }
 
