@@ -48,7 +48,7 @@ impl<'a> Window<'a> {
         });
         let mut window = Window { display, process, commands, answers, id: String::new() };
         window.ask(json!("state"));
-        window.id = display.xdotool(&["search", "--onlyvisible", "--name", "Antumbra"]);
+        window.id = display.xdotool(&["search", "--sync", "--onlyvisible", "--name", "Antumbra"]);
         window
     }
 
