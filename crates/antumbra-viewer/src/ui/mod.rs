@@ -74,6 +74,9 @@ pub fn show(
     memory: &mut Memory,
 ) -> Wishes {
     let mut wishes = Wishes::default();
+    if ui.available_size().min_elem() < style::LEAST {
+        return wishes;
+    }
     egui::Panel::top("bar").show(ui, |ui| bar::show(ui, desk, session, memory, &mut wishes));
     egui::Panel::right("panel")
         .default_size(style::PANEL)

@@ -2,6 +2,8 @@
 
 use eframe::egui::{self, Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Visuals};
 
+/// A window that is narrower or lower than this shows nothing, points: bars and panels would have sizes under 0.
+pub const LEAST: f32 = 100.0;
 /// Width of the side panel, points.
 pub const PANEL: f32 = 296.0;
 /// Height of the graph, points.
