@@ -14,6 +14,8 @@ pub enum Need {
     CppCompiler,
     /// A Vulkan loader with a driver that can work here: of a GPU, or the software one.
     VulkanDriver,
+    /// A display without a screen, and a hand for its mouse, for the tests of the window.
+    VirtualDisplay,
     /// `cargo fmt`.
     Rustfmt,
     /// `cargo clippy`.
@@ -28,6 +30,9 @@ impl Need {
                 env::var_os("CXX").is_some() || ["c++", "g++", "clang++"].iter().any(|c| available(c, &["--version"]))
             }
             Need::VulkanDriver => !cfg!(target_os = "linux") || (has_vulkan_loader() && has_vulkan_driver()),
+            Need::VirtualDisplay => {
+                !cfg!(target_os = "linux") || (is_on_path("Xvfb") && available("xdotool", &["--version"]))
+            }
             Need::Rustfmt => available("cargo", &["fmt", "--version"]),
             Need::Clippy => available("cargo", &["clippy", "--version"]),
         }
@@ -37,6 +42,7 @@ impl Need {
         match self {
             Need::CppCompiler => "a C++ compiler",
             Need::VulkanDriver => "a Vulkan driver",
+            Need::VirtualDisplay => "a virtual display",
             Need::Rustfmt => "rustfmt",
             Need::Clippy => "clippy",
         }
@@ -47,6 +53,9 @@ impl Need {
         match self {
             Need::CppCompiler => &["g++"],
             Need::VulkanDriver => &["mesa-vulkan-drivers", "libvulkan1"],
+            Need::VirtualDisplay => {
+                &["xvfb", "xdotool", "libx11-xcb1", "libxkbcommon-x11-0", "libxcursor1", "libxi6", "libxrandr2"]
+            }
             Need::Rustfmt | Need::Clippy => &[],
         }
     }
@@ -56,7 +65,7 @@ impl Need {
         match self {
             Need::Rustfmt => Some("rustfmt"),
             Need::Clippy => Some("clippy"),
-            Need::CppCompiler | Need::VulkanDriver => None,
+            Need::CppCompiler | Need::VulkanDriver | Need::VirtualDisplay => None,
         }
     }
 }
@@ -105,6 +114,11 @@ fn apt_install(packages: &[&str]) -> Result<(), Failure> {
         .and_then(|_| apt(&[&["install", "-y", "--no-install-recommends"], packages].concat()))
         .map_err(|failure| Failure::Machine(format!("{failure}\n       {by_hand}")))?;
     Ok(())
+}
+
+/// Whether a program that has no harmless call lies where the system looks for programs.
+fn is_on_path(program: &str) -> bool {
+    env::var_os("PATH").is_some_and(|path| env::split_paths(&path).any(|folder| folder.join(program).is_file()))
 }
 
 /// The library that every Vulkan program opens.

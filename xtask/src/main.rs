@@ -56,7 +56,7 @@ fn demo(more: &[String]) -> Result<(), Failure> {
 /// closing lines can be read by a machine.
 fn test() -> Result<(), Failure> {
     use machine::Need;
-    machine::set_up(&[Need::CppCompiler, Need::VulkanDriver, Need::Rustfmt, Need::Clippy])?;
+    machine::set_up(&[Need::CppCompiler, Need::VulkanDriver, Need::VirtualDisplay, Need::Rustfmt, Need::Clippy])?;
     let mut steps = vec![
         Step::new("fmt", cargo(["fmt", "--all", "--check"])),
         Step::new("clippy", cargo(["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"])),

@@ -33,6 +33,9 @@ pub enum Command {
     /// Put a question that a paper has put to people to an image metric
     #[command(subcommand)]
     Study(Study),
+    /// Look at techniques in a window: side by side, or beside the truth
+    #[cfg(feature = "viewer")]
+    View(ViewArgs),
     /// List the techniques, their settings and where they come from
     Techniques(ListArgs),
     /// List the built-in scenes and their parameters
@@ -142,6 +145,26 @@ pub struct RhoArgs {
 fn threshold(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok().filter(|v| (1e-4..=0.5).contains(v));
     value.ok_or_else(|| "expected a FLIP error from 0.0001 to 0.5".to_owned())
+}
+
+/// `antumbra view`.
+#[cfg(feature = "viewer")]
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// A .glb, .gltf, .obj or .ply file, a scene file (.toml or .json), or builtin:NAME [default: builtin:fence]
+    pub scene: Option<String>,
+    /// Technique and its settings, name:key=value,key=value; one stands beside the truth, two beside each other
+    #[arg(short, long = "technique", value_name = "SPEC")]
+    pub techniques: Vec<Technique>,
+    /// Size of the window in points [default: 1440x900]
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// Part of an adapter's name, or its number in `antumbra adapters` [default: the best]
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub adapter: Option<AdapterChoice>,
+    /// Take commands from standard input, a JSON object a line, and answer each by a line
+    #[arg(long)]
+    pub commands: bool,
 }
 
 /// `antumbra techniques`, `scenes` and `adapters`.

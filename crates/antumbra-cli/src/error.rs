@@ -24,6 +24,10 @@ pub enum CliError {
     /// The library refused or failed.
     #[error(transparent)]
     Gpu(#[from] antumbra::Error),
+    /// No window.
+    #[cfg(feature = "viewer")]
+    #[error(transparent)]
+    Window(#[from] antumbra_viewer::WindowError),
     /// No truth.
     #[error(transparent)]
     Reference(#[from] ReferenceError),
@@ -62,6 +66,8 @@ impl CliError {
                 E::UnknownAdapter { .. } | E::Size { .. } | E::Spec(_) | E::Casters { .. } | E::Pattern { .. },
             ) => 2,
             CliError::Metrics { source: MetricsError::NothingValid, .. } => 2,
+            #[cfg(feature = "viewer")]
+            CliError::Window(_) => 1,
             CliError::Gpu(_) | CliError::Metrics { .. } | CliError::Report(_) | CliError::Write { .. } => 1,
         }
     }

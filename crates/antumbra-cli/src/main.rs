@@ -1,4 +1,4 @@
-//! Soft shadows from the command line: render, reference, compare, and lists of what there is.
+//! Soft shadows from the command line: render, reference, compare, a window to look, and lists of what there is.
 #![deny(missing_docs)]
 
 mod bench;

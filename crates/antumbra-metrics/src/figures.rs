@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::image::{Image, MetricsError, Pair};
+#[cfg(feature = "perceptual")]
 use crate::perceptual;
 
 /// Truth under this is umbra.
@@ -10,6 +11,7 @@ pub const UMBRA_BELOW: f32 = 0.001;
 /// Truth over this is lit; under it is shadow or penumbra.
 pub const LIT_ABOVE: f32 = 0.999;
 
+#[cfg(feature = "perceptual")]
 /// How far an image is from the truth. Every figure but `ssim` is 0 at best and 1 at worst. A mean over a class of
 /// pixels that the image does not have is 0: `counts` says so.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -51,12 +53,43 @@ pub struct Counts {
     pub lit: u64,
 }
 
+/// [`Figures`] without those that judge by the eye: a fraction of the time, for pictures that change.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ErrorFigures {
+    /// As in [`Figures`].
+    pub average_error: f64,
+    /// As in [`Figures`].
+    pub rmse: f64,
+    /// As in [`Figures`].
+    pub p99: f64,
+    /// As in [`Figures`].
+    pub max: f64,
+    /// As in [`Figures`].
+    pub leak: f64,
+    /// As in [`Figures`].
+    pub acne: f64,
+    /// As in [`Figures`].
+    pub counts: Counts,
+}
+
 /// Compares `test` with `truth` over the pixels whose entry in `valid` is true (row-major, as the images).
 ///
 /// Values may stray from [0, 1] by a thousandth (rounding) and are clamped. What pixels that are not valid hold does
 /// not matter.
+#[cfg(feature = "perceptual")]
 pub fn figures(test: Image, truth: Image, valid: &[bool]) -> Result<Figures, MetricsError> {
     let pair = Pair::new(test, truth, valid)?;
+    let ErrorFigures { average_error, rmse, p99, max, leak, acne, counts } = errors_of(&pair, valid);
+    let (ssim, flip) = (perceptual::ssim(&pair), perceptual::flip(&pair, valid));
+    Ok(Figures { average_error, rmse, p99, max, leak, acne, ssim, flip, counts })
+}
+
+/// The same without the figures that judge by the eye.
+pub fn error_figures(test: Image, truth: Image, valid: &[bool]) -> Result<ErrorFigures, MetricsError> {
+    Ok(errors_of(&Pair::new(test, truth, valid)?, valid))
+}
+
+fn errors_of(pair: &Pair, valid: &[bool]) -> ErrorFigures {
     let mut sums = Sums::default();
     let mut errors = Vec::with_capacity(pair.truth.len());
     for ((&test, &truth), _) in pair.test.iter().zip(&pair.truth).zip(valid).filter(|(_, valid)| **valid) {
@@ -64,17 +97,15 @@ pub fn figures(test: Image, truth: Image, valid: &[bool]) -> Result<Figures, Met
         errors.push((f64::from(test) - f64::from(truth)).abs());
     }
     let counts = sums.counts;
-    Ok(Figures {
+    ErrorFigures {
         average_error: mean(sums.shadow_error, counts.shadowed),
         rmse: mean(sums.squared_error, counts.valid).sqrt(),
         max: errors.iter().copied().fold(0.0, f64::max),
         p99: percentile_99(&mut errors),
         leak: mean(sums.umbra_light, counts.umbra),
         acne: mean(sums.lit_darkness, counts.lit),
-        ssim: perceptual::ssim(&pair),
-        flip: perceptual::flip(&pair, valid),
         counts,
-    })
+    }
 }
 
 /// Sums over the valid pixels, in double precision: a float would lose the small errors of a large picture.

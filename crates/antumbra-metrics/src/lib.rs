@@ -16,8 +16,11 @@
 mod figures;
 mod heat;
 mod image;
+#[cfg(feature = "perceptual")]
 mod perceptual;
 
-pub use figures::{Counts, Figures, LIT_ABOVE, UMBRA_BELOW, figures};
+pub use figures::{Counts, ErrorFigures, LIT_ABOVE, UMBRA_BELOW, error_figures};
+#[cfg(feature = "perceptual")]
+pub use figures::{Figures, figures};
 pub use heat::{HEAT_SCALE, INVALID_COLOR, color_bar, heat_color, heat_map};
 pub use image::{Image, MetricsError, RgbImage, Role};

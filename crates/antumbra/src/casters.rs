@@ -105,6 +105,7 @@ pub struct BorrowedMesh<'a> {
 }
 
 /// A set of triangles in one pair of buffers with one material: one draw.
+#[derive(Clone)]
 pub(crate) struct Batch {
     pub vertices: wgpu::Buffer,
     pub indices: wgpu::Buffer,
@@ -160,7 +161,8 @@ pub(crate) fn items_of(
     })
 }
 
-/// All geometry that shadows are made of.
+/// All geometry that shadows are made of. Clones share the buffers.
+#[derive(Clone)]
 pub struct Casters {
     pub(crate) batches: Vec<Batch>,
     pub(crate) items: wgpu::Buffer,
@@ -169,8 +171,8 @@ pub struct Casters {
     adjacency: OnceLock<Adjacency>,
     triangle_count: u64,
     some_only_receive: bool,
-    bounds: Aabb,
-    occluder_bounds: Aabb,
+    pub(crate) bounds: Aabb,
+    pub(crate) occluder_bounds: Aabb,
 }
 
 impl Casters {

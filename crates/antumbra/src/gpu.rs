@@ -88,6 +88,46 @@ impl std::str::FromStr for AdapterChoice {
     }
 }
 
+impl AdapterChoice {
+    /// The one that is chosen among these, which are in the order of [`adapters`].
+    fn among(&self, mut list: Vec<wgpu::Adapter>) -> Result<wgpu::Adapter, Error> {
+        let names: Vec<String> = list.iter().map(|a| a.get_info().name).collect();
+        let index = match self {
+            AdapterChoice::Best => 0,
+            AdapterChoice::Index(i) => *i,
+            AdapterChoice::Name(n) => names
+                .iter()
+                .position(|name| name.to_lowercase().contains(&n.to_lowercase()))
+                .ok_or_else(|| Error::UnknownAdapter { asked: n.clone(), known: names.clone() })?,
+        };
+        if list.is_empty() {
+            return Err(Error::NoAdapter);
+        }
+        if index >= list.len() {
+            return Err(Error::UnknownAdapter { asked: index.to_string(), known: names });
+        }
+        Ok(list.swap_remove(index))
+    }
+
+    /// The one that is chosen among the adapters of a host's own instance, for hosts that have a window: `suits` tells
+    /// whether one can draw to it.
+    pub fn of(&self, list: &[wgpu::Adapter], suits: impl Fn(&wgpu::Adapter) -> bool) -> Result<wgpu::Adapter, Error> {
+        let mut list: Vec<_> = list.iter().filter(|a| is_usable(a) && suits(a)).cloned().collect();
+        list.sort_by_key(|a| rank(&a.get_info()));
+        self.among(list)
+    }
+}
+
+/// What to ask an adapter for, for hosts that open the device themselves.
+pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+    wgpu::DeviceDescriptor {
+        label: Some("antumbra"),
+        required_features: adapter.features() & WANTED,
+        required_limits: adapter.limits(),
+        ..Default::default()
+    }
+}
+
 /// The optional features that are asked for where the adapter has them.
 const WANTED: wgpu::Features = wgpu::Features::TIMESTAMP_QUERY
     .union(wgpu::Features::FLOAT32_FILTERABLE)
@@ -140,30 +180,9 @@ fn rank(info: &wgpu::AdapterInfo) -> u32 {
 impl Gpu {
     /// Opens an adapter of this machine.
     pub async fn new(choice: &AdapterChoice) -> Result<Gpu, Error> {
-        let mut list = adapters().await;
-        let names: Vec<String> = list.iter().map(|a| a.get_info().name).collect();
-        let index = match choice {
-            AdapterChoice::Best => 0,
-            AdapterChoice::Index(i) => *i,
-            AdapterChoice::Name(n) => names
-                .iter()
-                .position(|name| name.to_lowercase().contains(&n.to_lowercase()))
-                .ok_or_else(|| Error::UnknownAdapter { asked: n.clone(), known: names.clone() })?,
-        };
-        if list.is_empty() {
-            return Err(Error::NoAdapter);
-        }
-        if index >= list.len() {
-            return Err(Error::UnknownAdapter { asked: index.to_string(), known: names });
-        }
-        let adapter = list.swap_remove(index);
+        let adapter = choice.among(adapters().await)?;
         let (device, queue) = adapter
-            .request_device(&wgpu::DeviceDescriptor {
-                label: Some("antumbra"),
-                required_features: adapter.features() & WANTED,
-                required_limits: adapter.limits(),
-                ..Default::default()
-            })
+            .request_device(&device_descriptor(&adapter))
             .await
             .map_err(|e| Error::Device { adapter: adapter.get_info().name, message: e.to_string() })?;
         Ok(Gpu::from_host(device, queue))

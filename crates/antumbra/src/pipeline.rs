@@ -133,7 +133,8 @@ fn bind_group(
 type ComputeKey = (ShaderKey, &'static str);
 type RenderKey = (ShaderKey, RenderTarget);
 
-/// All pipelines of a device.
+/// All pipelines of a device. They are compiled outside of the locks, so that a thread that compiles does not hold up one
+/// that draws; of two threads that compile the same, the first one's pipeline stays.
 #[derive(Default)]
 pub(crate) struct PipelineCache {
     compute: Mutex<HashMap<ComputeKey, Arc<ComputePipeline>>>,
@@ -147,8 +148,8 @@ impl PipelineCache {
         key: &ShaderKey,
         entry: &'static str,
     ) -> Result<Arc<ComputePipeline>, Error> {
-        let mut cache = self.compute.lock().expect("no panic while compiling");
-        if let Some(found) = cache.get(&(key.clone(), entry)) {
+        let known = (key.clone(), entry);
+        if let Some(found) = self.compute.lock().expect("only maps are touched under the lock").get(&known) {
             return Ok(found.clone());
         }
         let program = Program::compose(key)?;
@@ -166,8 +167,8 @@ impl PipelineCache {
             slots: program.bindings(&[entry]),
             name: key.module,
         });
-        cache.insert((key.clone(), entry), made.clone());
-        Ok(made)
+        let mut cache = self.compute.lock().expect("only maps are touched under the lock");
+        Ok(cache.entry(known).or_insert(made).clone())
     }
 
     pub(crate) fn render(
@@ -176,8 +177,8 @@ impl PipelineCache {
         key: &ShaderKey,
         target: &RenderTarget,
     ) -> Result<Arc<RenderPipeline>, Error> {
-        let mut cache = self.render.lock().expect("no panic while compiling");
-        if let Some(found) = cache.get(&(key.clone(), target.clone())) {
+        let known = (key.clone(), target.clone());
+        if let Some(found) = self.render.lock().expect("only maps are touched under the lock").get(&known) {
             return Ok(found.clone());
         }
         let program = Program::compose(key)?;
@@ -217,8 +218,8 @@ impl PipelineCache {
         });
         let entries: &[&str] = if has_fragment { &["vertex", "fragment"] } else { &["vertex"] };
         let made = Arc::new(RenderPipeline { pipeline, slots: program.bindings(entries), name: key.module });
-        cache.insert((key.clone(), target.clone()), made.clone());
-        Ok(made)
+        let mut cache = self.render.lock().expect("only maps are touched under the lock");
+        Ok(cache.entry(known).or_insert(made).clone())
     }
 }
 

@@ -170,6 +170,19 @@ impl Timer {
         Ok(self.sum(&results))
     }
 
+    /// Submits the encoder and does not wait; [`Timer::poll`] has the times of its passes some frames later.
+    pub fn submit(&mut self, gpu: &Gpu, mut encoder: wgpu::CommandEncoder) -> Result<(), Error> {
+        self.profiler.resolve_queries(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        self.profiler.end_frame().map_err(|e| Error::Validation(e.to_string()))
+    }
+
+    /// The times of the oldest submitted frame that has ended and was not asked for yet, as of [`Timer::finish`].
+    pub fn poll(&mut self, gpu: &Gpu) -> Option<Vec<PassTime>> {
+        let results = self.profiler.process_finished_frame(gpu.queue.get_timestamp_period())?;
+        Some(self.sum(&results))
+    }
+
     fn sum(&self, results: &[GpuTimerQueryResult]) -> Vec<PassTime> {
         let mut times: Vec<PassTime> = Vec::new();
         for r in results {

@@ -5,7 +5,7 @@ use crate::passes::{geometry_buffer::GeometryBuffer, picture::Picture};
 use crate::resource::{Texture, buffer_of};
 use crate::roles::roles;
 use crate::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, ShadowFrustum, Technique, View, frame};
-use antumbra_scene::{Aabb, Material, Mesh, Scene, Wrap};
+use antumbra_scene::{Aabb, Instance, Material, Mesh, Scene, Wrap};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
 
@@ -77,29 +77,72 @@ impl SceneRenderer {
 
 /// Puts a scene's triangles on the GPU: all plain meshes in one batch, one batch more for each texture.
 pub fn upload(gpu: &Gpu, scene: &Scene) -> Result<Casters, Error> {
-    let mut builder = CastersBuilder::new(gpu);
-    let roles = roles(scene);
-    let mut groups: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
-    for (index, mesh) in scene.meshes.iter().enumerate() {
-        let key = scene.materials[mesh.material].texture.as_ref().map(|_| mesh.material);
-        match groups.iter_mut().find(|(k, _)| *k == key) {
-            Some((_, meshes)) => meshes.push(index),
-            None => groups.push((key, vec![index])),
+    Ok(Placed::upload(gpu, scene)?.casters)
+}
+
+/// A scene's triangles on the GPU whose instances can be moved afterwards.
+pub struct Placed {
+    /// What techniques are given.
+    pub casters: Casters,
+    /// What each instance is; decided once, where it stood at first.
+    pub roles: Vec<Role>,
+    /// For each batch its instances, in the order of its transforms.
+    order: Vec<Vec<usize>>,
+    /// Object-space box around each mesh.
+    boxes: Vec<Aabb>,
+}
+
+impl Placed {
+    /// Uploads a scene: all plain meshes in one batch, one batch more for each texture.
+    pub fn upload(gpu: &Gpu, scene: &Scene) -> Result<Placed, Error> {
+        let mut builder = CastersBuilder::new(gpu);
+        let (roles, mut order) = (roles(scene), Vec::new());
+        let mut groups: Vec<(Option<usize>, Vec<usize>)> = Vec::new();
+        for (index, mesh) in scene.meshes.iter().enumerate() {
+            let key = scene.materials[mesh.material].texture.as_ref().map(|_| mesh.material);
+            match groups.iter_mut().find(|(k, _)| *k == key) {
+                Some((_, meshes)) => meshes.push(index),
+                None => groups.push((key, vec![index])),
+            }
         }
-    }
-    for (material, meshes) in &groups {
-        for chunk in split(gpu, scene, meshes) {
-            push_batch(gpu, &mut builder, scene, &roles, material.map(|m| &scene.materials[m]), chunk);
+        for (material, meshes) in &groups {
+            for chunk in split(gpu, scene, meshes) {
+                let material = material.map(|m| &scene.materials[m]);
+                order.extend(push_batch(gpu, &mut builder, scene, &roles, material, chunk));
+            }
         }
+        builder.bounds = scene.bounds();
+        let occluders = scene.instances.iter().zip(&roles).filter(|(_, role)| **role == Role::Caster);
+        builder.occluder_bounds = occluders.fold(Aabb::EMPTY, |bounds, (i, _)| {
+            let mesh = &scene.meshes[i.mesh];
+            let placed = mesh.indices.iter().map(|&k| i.world_from_object.transform_point3(mesh.positions[k as usize]));
+            bounds.union(&Aabb::of_points(placed))
+        });
+        let boxes = scene.meshes.iter().map(Mesh::bounds).collect();
+        Ok(Placed { casters: builder.finish()?, roles, order, boxes })
     }
-    builder.bounds = scene.bounds();
-    let occluders = scene.instances.iter().zip(&roles).filter(|(_, role)| **role == Role::Caster);
-    builder.occluder_bounds = occluders.fold(Aabb::EMPTY, |bounds, (i, _)| {
-        let mesh = &scene.meshes[i.mesh];
-        let placed = mesh.indices.iter().map(|&k| i.world_from_object.transform_point3(mesh.positions[k as usize]));
-        bounds.union(&Aabb::of_points(placed))
-    });
-    builder.finish()
+
+    /// Moves every instance: `instances` are the uploaded scene's with other `world_from_object`. The new places count
+    /// for all work submitted after this call, also for that of earlier clones of the casters; only the bounds, boxes
+    /// around the boxes of meshes, are new in the result alone.
+    pub fn moved(&self, gpu: &Gpu, instances: &[Instance]) -> Casters {
+        let mut casters = self.casters.clone();
+        for (batch, order) in casters.batches.iter().zip(&self.order) {
+            let matrix = |&i: &usize| Mat4::from(instances[i].world_from_object);
+            let matrices: Vec<Mat4> = order.iter().map(matrix).collect();
+            gpu.queue.write_buffer(&batch.transforms, 0, bytemuck::cast_slice(&matrices));
+        }
+        let around = |only: fn(&Role) -> bool| {
+            let chosen = instances.iter().zip(&self.roles).filter(|(_, role)| only(role));
+            chosen.fold(Aabb::EMPTY, |bounds, (i, _)| {
+                let corners = self.boxes[i.mesh].corners().map(|c| i.world_from_object.transform_point3(c));
+                bounds.union(&Aabb::of_points(corners.into_iter()))
+            })
+        };
+        casters.bounds = around(|_| true);
+        casters.occluder_bounds = around(|role| *role == Role::Caster);
+        casters
+    }
 }
 
 /// Cuts a list of meshes where their vertices or indices would outgrow a storage binding.
@@ -120,6 +163,7 @@ fn split<'a>(gpu: &Gpu, scene: &Scene, meshes: &'a [usize]) -> Vec<&'a [usize]> 
     chunks
 }
 
+/// Adds a batch of these meshes and returns its instances in the order of their transforms; none where there are none.
 fn push_batch(
     gpu: &Gpu,
     builder: &mut CastersBuilder,
@@ -127,8 +171,8 @@ fn push_batch(
     roles: &[Role],
     textured: Option<&Material>,
     meshes: &[usize],
-) {
-    let (mut words, mut indices, mut transforms, mut items) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+) -> Option<Vec<usize>> {
+    let (mut words, mut indices, mut order, mut items) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut ranges = Vec::new();
     let stride = if textured.is_some() { 5 } else { 3 };
     for &m in meshes {
@@ -140,16 +184,17 @@ fn push_batch(
         ranges.push(first..(indices.len() / 3) as u32);
         let color = srgb(scene.materials[mesh.material].base_color.truncate());
         for role in [Role::Caster, Role::Ground, Role::Receiver] {
-            let placed = scene.instances.iter().zip(roles).filter(|(i, r)| i.mesh == m && **r == role);
-            let from = transforms.len() as u32;
-            transforms.extend(placed.map(|(i, _)| Mat4::from(i.world_from_object)));
-            let range = from..transforms.len() as u32;
+            let placed = (0..roles.len()).filter(|&i| scene.instances[i].mesh == m && roles[i] == role);
+            let from = order.len() as u32;
+            order.extend(placed);
+            let range = from..order.len() as u32;
             items.extend(items_of(first, mesh.triangle_count() as u32, range, role, color));
         }
     }
     if items.is_empty() {
-        return;
+        return None;
     }
+    let transforms: Vec<Mat4> = order.iter().map(|&i| Mat4::from(scene.instances[i].world_from_object)).collect();
     let layout = BatchLayout {
         vertex_offset: 0,
         vertex_stride: stride as u32,
@@ -172,12 +217,13 @@ fn push_batch(
         [
             buffer_of(gpu, "vertices", bytemuck::cast_slice(&words), storage),
             buffer_of(gpu, "indices", bytemuck::cast_slice(&indices), storage),
-            buffer_of(gpu, "transforms", bytemuck::cast_slice(&transforms), storage),
+            buffer_of(gpu, "transforms", bytemuck::cast_slice(&transforms), storage | wgpu::BufferUsages::COPY_DST),
         ],
         texture.as_ref().map(|(view, sampler)| (view, sampler)),
         items.into_iter(),
         ranges,
     );
+    Some(order)
 }
 
 fn push_vertices(words: &mut Vec<f32>, mesh: &Mesh, with_uv: bool) {

@@ -5,13 +5,19 @@ use crate::{Error, Frame, Gpu, recorder::Recorder, techniques::TECHNIQUES};
 use serde_json::{Map, Value};
 use std::pin::Pin;
 
-/// Fills a frame's visibility.
-pub trait Technique {
+/// Fills a frame's visibility. It may be made on one thread and recorded on another.
+pub trait Technique: wgpu::WasmNotSend {
     /// Records all passes. Textures are made at the first call and again when sizes change.
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error>;
 
     /// GPU memory that it owns, by the label of the pass that fills it.
     fn memory(&self) -> Vec<Memory>;
+
+    /// What it holds on the way to the visibility, for looking at: maps, pyramids, lists of pixels. Nothing before the
+    /// first [`Technique::record`].
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        Vec::new()
+    }
 
     /// What the last frame did, in figures that are neither time nor memory, such as the number of maps. Waits for the
     /// GPU: for tests and reports.
@@ -36,6 +42,49 @@ impl Memory {
     /// `bytes` that belong to `pass`.
     pub fn new(pass: &'static str, bytes: u64) -> Memory {
         Memory { pass, bytes }
+    }
+}
+
+/// A texture or list that a technique works with, and how to look at it.
+#[derive(Clone, Debug)]
+pub struct InnerPicture {
+    /// A few words for a menu; the label of the pass that fills it, where there is one.
+    pub name: &'static str,
+    /// What its values are, with their unit.
+    pub help: &'static str,
+    /// The values.
+    pub content: InnerContent,
+}
+
+/// Where the values of an [`InnerPicture`] lie.
+#[derive(Clone, Debug)]
+pub enum InnerContent {
+    /// Float, unsigned or depth texels, any layers and levels; needs `TEXTURE_BINDING`.
+    Texture(wgpu::Texture),
+    /// Points that the light is looked at from, in parts of its edges from its centre, each in [-1/2, 1/2]².
+    LightPoints(Vec<glam::Vec2>),
+    /// Pixels that were listed, as in `shaders/penumbra_list.wesl`.
+    Pixels {
+        /// The list; needs `STORAGE`.
+        list: wgpu::Buffer,
+        /// Size of the picture, pixels.
+        size: [u32; 2],
+    },
+}
+
+impl InnerPicture {
+    /// A texture of this name.
+    pub fn of_texture(name: &'static str, help: &'static str, texture: &crate::resource::Texture) -> InnerPicture {
+        InnerPicture { name, help, content: InnerContent::Texture(texture.texture.clone()) }
+    }
+
+    /// Points of the light, in parts of its edges from its centre.
+    pub fn of_light_points(points: &[glam::Vec2]) -> InnerPicture {
+        InnerPicture {
+            name: "light samples",
+            help: "points of the light that maps are drawn from, seen as the light's rectangle",
+            content: InnerContent::LightPoints(points.to_vec()),
+        }
     }
 }
 

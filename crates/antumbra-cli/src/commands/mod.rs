@@ -6,6 +6,8 @@ mod list;
 mod reference;
 mod render;
 mod study;
+#[cfg(feature = "viewer")]
+mod view;
 
 use crate::cli::Command;
 use crate::error::CliError;
@@ -19,6 +21,8 @@ pub fn run(command: &Command) -> Result<(), CliError> {
         Command::Compare(args) => compare::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Study(study) => study::run(study),
+        #[cfg(feature = "viewer")]
+        Command::View(args) => view::run(args),
         Command::Techniques(args) => list::techniques(args.json),
         Command::Scenes(args) => list::scenes(args.json),
         Command::Adapters(args) => list::adapters(args.json),

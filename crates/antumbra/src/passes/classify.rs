@@ -5,7 +5,7 @@ use crate::passes::{depth_map::DepthMap, depth_pyramid::DepthPyramid};
 use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::storage_buffer;
 use crate::shader::ShaderKey;
-use crate::technique::Memory;
+use crate::technique::{InnerContent, InnerPicture, Memory};
 use crate::{Error, Gpu, bindings};
 
 /// The pixels in penumbra, for an indirect dispatch of 64 threads a workgroup; see `shaders/penumbra_list.wesl`.
@@ -87,6 +87,15 @@ impl PenumbraList {
             pass.dispatch_workgroups(1, 1, 1);
         });
         Ok(())
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        InnerPicture {
+            name: "penumbra list",
+            help: "pixels that are looked at closely; all others are known to be lit or dark",
+            content: InnerContent::Pixels { list: self.buffer.clone(), size: self.size },
+        }
     }
 
     /// GPU memory by pass.

@@ -23,7 +23,7 @@ use crate::passes::depth_map::{DepthMap, Drawing};
 use crate::recorder::{Recorder, Work};
 use crate::resource::{Texture, storage_buffer, uniform};
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 
 gpu_struct! {
@@ -141,6 +141,15 @@ impl DepthLayers {
         let texel = 2.0 * frame.frustum.tan_half / self.shape.size as f32;
         let half_light = (0.5 * frame.light.size).max(glam::Vec2::splat(1.0e-6));
         apart * (texel / half_light).min_element()
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        InnerPicture::of_texture(
+            "depth layers",
+            "near and far end of each layer of surfaces, as inverse distance",
+            &self.texture,
+        )
     }
 
     /// GPU memory by pass.

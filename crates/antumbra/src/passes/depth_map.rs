@@ -7,7 +7,7 @@ use crate::pipeline::{Binding, RenderTarget};
 use crate::recorder::{Recorder, depth_target};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use glam::Mat4;
 
@@ -189,6 +189,15 @@ impl DepthMap {
     /// What was culled.
     pub fn culling(&self) -> &Culling {
         &self.culling
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        InnerPicture::of_texture(
+            "depth map",
+            "nearest caster as near / z: 0 is infinitely far, 1 at the near plane",
+            &self.texture,
+        )
     }
 
     /// GPU memory by pass.

@@ -4,7 +4,7 @@ use crate::passes::depth_map::DepthMap;
 use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::{Texture, uniform};
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Error, Gpu, bindings, gpu_struct};
 
 gpu_struct! {
@@ -78,6 +78,16 @@ impl DepthPyramid {
             }
         });
         Ok(())
+    }
+
+    /// For looking at.
+    pub fn inner_pictures(&self) -> [InnerPicture; 2] {
+        let bounds = "smallest and largest inverse distance below each node, 1/metres";
+        let layers = "mean inverse distance of the nearer and of the farther layer, 1/metres; share of the nearer";
+        [
+            InnerPicture::of_texture("depth pyramid: bounds", bounds, &self.bounds),
+            InnerPicture::of_texture("depth pyramid: layers", layers, &self.layers),
+        ]
     }
 
     /// GPU memory by pass.

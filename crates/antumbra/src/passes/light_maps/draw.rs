@@ -7,7 +7,7 @@ use crate::pipeline::RenderTarget;
 use crate::recorder::Recorder;
 use crate::resource::{Texture, UniformArray, buffer_of, storage_buffer};
 use crate::shader::ShaderKey;
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Error, Gpu, bindings, gpu_struct};
 use std::ops::Range;
 
@@ -232,6 +232,11 @@ impl LightMaps {
             .with::<MapStage>()
             .with::<GroupUniform>()
             .with::<BatchLayout>()
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        InnerPicture::of_texture("light maps", "one depth map for each point of the light, as near / z", &self.texture)
     }
 
     /// GPU memory by pass.

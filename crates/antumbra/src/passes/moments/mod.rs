@@ -12,7 +12,7 @@ use crate::passes::light_depth::LightDepth;
 use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::{Texture, UniformArray, uniform};
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use glam::UVec2;
 
@@ -169,6 +169,12 @@ impl MomentMap {
     fn threads(&self, level: u32) -> [u32; 3] {
         let side = (self.shape.size >> level).max(1);
         [side, side, self.shape.layers]
+    }
+
+    /// For looking at: the depths, and what is stored of them.
+    pub fn inner_pictures(&self) -> [InnerPicture; 2] {
+        let help = "what is stored of the depths of a texel, filtered";
+        [self.depth.casters.inner_picture(), InnerPicture::of_texture("moments", help, &self.texture)]
     }
 
     /// GPU memory by pass.

@@ -6,7 +6,7 @@ use crate::pipeline::Binding;
 use crate::recorder::{Recorder, Work};
 use crate::resource::{Texture, storage_buffer};
 use crate::shader::ShaderKey;
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Error, Gpu, bindings};
 
 crate::choices! {
@@ -134,6 +134,15 @@ impl SummedArea {
         let columns = bindings! { row_sums: &self.rows, summed: &self.texture };
         recorder.compute(label, &down_columns, columns, groups());
         Ok(())
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        InnerPicture::of_texture(
+            "summed-area table",
+            "sums of what is stored over all texels to the left and above, without their mean",
+            &self.texture,
+        )
     }
 
     /// GPU memory by pass.

@@ -18,7 +18,7 @@ use crate::passes::{
 use crate::pipeline::ComputePipeline;
 use crate::recorder::Recorder;
 use crate::shader::ShaderKey;
-use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
+use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
 use crate::techniques::uniform_sampling::Evaluate;
 use crate::{Error, Frame, Gpu};
 use rounds::{Rounds, Sum};
@@ -59,6 +59,12 @@ impl Penumbra {
         pyramid.record(recorder, map, frame.frustum.near)?;
         list.record(recorder, frame, map, pyramid, Listing::default())?;
         Ok(list)
+    }
+
+    fn inner_pictures(&self) -> impl Iterator<Item = InnerPicture> {
+        let map = self.map.iter().map(DepthMap::inner_picture);
+        let pyramid = self.pyramid.iter().flat_map(DepthPyramid::inner_pictures);
+        map.chain(pyramid).chain(self.list.iter().map(PenumbraList::inner_picture))
     }
 
     fn memory(&self) -> impl Iterator<Item = Memory> {
@@ -177,6 +183,11 @@ impl Technique for AdaptiveSampling {
             (None, None) => rounds.evaluate(recorder),
         }
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let maps = self.maps.iter().map(LightMaps::inner_picture);
+        maps.chain(self.light_view.iter().map(DepthMap::inner_picture)).chain(self.penumbra.inner_pictures()).collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

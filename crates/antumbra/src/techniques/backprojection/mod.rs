@@ -13,7 +13,7 @@ use crate::pipeline::{Binding, ComputePipeline};
 use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
 use crate::shader::ShaderKey;
-use crate::technique::{About, Describe, Memory, Technique};
+use crate::technique::{About, Describe, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use serde_json::{Map, Value};
 use std::sync::Arc;
@@ -140,6 +140,13 @@ impl Technique for Backprojection {
         sparse.record(recorder, frame, list, |recorder, chosen| {
             look(recorder, chosen, bindings! { sharpness: &sparse.sharpness });
         })
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let map = self.map.iter().flat_map(|m| [m.nearest.inner_picture(), m.inner_picture()]);
+        map.chain(self.pyramid.iter().flat_map(DepthPyramid::inner_pictures))
+            .chain(self.list.iter().map(PenumbraList::inner_picture))
+            .collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

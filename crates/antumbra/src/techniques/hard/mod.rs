@@ -5,7 +5,7 @@ use crate::passes::depth_map::DepthMap;
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::shader::ShaderKey;
-use crate::technique::{About, Describe, Memory, Technique};
+use crate::technique::{About, Describe, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, settings::Kind};
 use std::sync::Arc;
 
@@ -49,6 +49,10 @@ impl Technique for Hard {
         let [width, height] = frame.geometry.size;
         recorder.compute("shadow lookup", &self.lookup, &set, Work::Threads([width, height, 1]));
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        self.map.iter().map(DepthMap::inner_picture).collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

@@ -3,7 +3,7 @@
 use super::backprojection::{Backprojection, BackprojectionSettings, Spacing};
 use crate::recorder::Recorder;
 use crate::settings::SpecError;
-use crate::technique::{About, Describe, Memory, Technique};
+use crate::technique::{About, Describe, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu};
 use serde_json::{Map, Value};
 
@@ -39,6 +39,10 @@ impl Describe for Packet {
 impl Technique for Packet {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         self.0.record(frame, recorder)
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        self.0.inner_pictures()
     }
 
     fn memory(&self) -> Vec<Memory> {

@@ -6,7 +6,7 @@ use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
 use crate::shader::ShaderKey;
-use crate::technique::{About, Describe, Memory, Technique};
+use crate::technique::{About, Describe, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
 use std::sync::Arc;
 
@@ -100,6 +100,10 @@ impl Technique for Pcf {
         let [width, height] = frame.geometry.size;
         recorder.compute("percentage-closer filter", &self.filter, &set, Work::Threads([width, height, 1]));
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        self.map.iter().map(DepthMap::inner_picture).collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

@@ -11,7 +11,7 @@ use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
 use crate::shader::ShaderKey;
-use crate::technique::{About, Describe, Memory, Technique};
+use crate::technique::{About, Describe, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
 use std::sync::Arc;
 
@@ -97,6 +97,13 @@ impl Technique for Pcss {
         });
         recorder.compute("blocker search and filter", &self.soften, &set, Work::Indirect(&list.buffer, 0));
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let map = self.map.iter().map(DepthMap::inner_picture);
+        map.chain(self.pyramid.iter().flat_map(DepthPyramid::inner_pictures))
+            .chain(self.list.iter().map(PenumbraList::inner_picture))
+            .collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

@@ -9,7 +9,7 @@ use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
 use crate::settings::Settings;
 use crate::shader::ShaderKey;
-use crate::technique::{About, Describe, Memory, Technique};
+use crate::technique::{About, Describe, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use glam::Vec2;
 use std::{marker::PhantomData, sync::Arc};
@@ -135,7 +135,7 @@ pub struct Prefiltered<P: Prefilter> {
     filtering: wgpu::Buffer,
     trilinear: wgpu::Sampler,
     map: Option<MomentMap>,
-    technique: PhantomData<P>,
+    technique: PhantomData<fn() -> P>,
 }
 
 impl<P: Prefilter> Describe for Prefiltered<P> {
@@ -208,6 +208,10 @@ impl<P: Prefilter> Technique for Prefiltered<P> {
         let [width, height] = frame.geometry.size;
         recorder.compute("filtered lookup", &self.lookup, &set, Work::Threads([width, height, 1]));
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        self.map.iter().flat_map(MomentMap::inner_pictures).collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

@@ -6,7 +6,7 @@ use super::{SsmSettings, maps::Maps};
 use crate::pipeline::RenderTarget;
 use crate::recorder::{Recorder, Work, color_target, dispatch};
 use crate::resource::Texture;
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Error, Frame, Gpu, bindings};
 
 /// The soft shadow map of every level, and the finest one merged over the layers.
@@ -123,6 +123,16 @@ impl SoftMap {
             });
         }
         Ok(())
+    }
+
+    /// For looking at: what is looked up at the end, and what each level added.
+    pub fn inner_pictures(&self) -> [InnerPicture; 2] {
+        let hidden = "part of the light that is hidden from the receiver at each texel";
+        let levels = "part of the light that a level of patches and all coarser ones hide";
+        [
+            InnerPicture::of_texture("soft shadow map", hidden, &self.merged),
+            InnerPicture::of_texture("soft shadow levels", levels, &self.levels),
+        ]
     }
 
     /// GPU memory by pass.

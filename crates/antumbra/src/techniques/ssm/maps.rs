@@ -4,7 +4,7 @@ use crate::passes::culling::Surfaces;
 use crate::passes::depth_map::{DepthMap, Drawing, Farthest};
 use crate::recorder::Recorder;
 use crate::resource::storage_buffer;
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Casters, Error, Frame, Gpu};
 
 /// Labels of the two drawings.
@@ -49,6 +49,12 @@ impl Maps {
         let farthest = Farthest { before: &self.receivers, depths: &self.farthest };
         let occluders = Drawing::of(OCCLUDERS, Surfaces::Occluders);
         draw(&self.nearest, &Drawing { farthest: (self.passes > 1).then_some(farthest), ..occluders })
+    }
+
+    /// For looking at.
+    pub fn inner_pictures(&self) -> [InnerPicture; 2] {
+        let receivers = InnerPicture { name: "receivers", ..self.receivers.inner_picture() };
+        [receivers, InnerPicture { name: "nearest occluders", ..self.nearest.inner_picture() }]
     }
 
     /// GPU memory by pass.

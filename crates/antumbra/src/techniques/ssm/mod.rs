@@ -10,7 +10,7 @@ mod settings;
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::resource::Texture;
-use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
+use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings};
 use accumulate::SoftMap;
 use maps::Maps;
@@ -110,6 +110,11 @@ impl Technique for Ssm {
         let [width, height] = frame.geometry.size;
         recorder.compute("projection", &self.project, &frame.bindings(&set), Work::Threads([width, height, 1]));
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let maps = self.maps.iter().flat_map(Maps::inner_pictures);
+        maps.chain([self.patches.inner_picture()]).chain(self.soft.inner_pictures()).collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

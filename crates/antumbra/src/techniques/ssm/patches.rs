@@ -9,7 +9,7 @@ use crate::pipeline::Binding;
 use crate::recorder::{Recorder, Work, dispatch};
 use crate::resource::{Texture, UniformArray, read_buffer, storage_buffer, uniform};
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 
 gpu_struct! {
@@ -164,6 +164,12 @@ impl Patches {
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
         let (patches, lost, widest) = (words[32], words[33], f32::from_bits(words[34]));
         Ok(vec![("patches", patches.into()), ("float16 loses", lost.into()), ("widest penumbra", widest.into())])
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        let help = "covered part of each micro-patch and its inverse distance, 1/metres; a level of the map a level";
+        InnerPicture::of_texture("micro-patches", help, &self.patches)
     }
 
     /// GPU memory by pass.

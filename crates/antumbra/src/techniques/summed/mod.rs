@@ -13,7 +13,7 @@ use crate::recorder::{Recorder, Work};
 use crate::resource::uniform;
 use crate::settings::Settings;
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::{About, Describe, Memory, Technique};
+use crate::technique::{About, Describe, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use std::{marker::PhantomData, sync::Arc};
 
@@ -64,7 +64,7 @@ pub struct Summed<S: Soft> {
     pyramid: Option<DepthPyramid>,
     list: Option<PenumbraList>,
     table: Option<SummedArea>,
-    technique: PhantomData<S>,
+    technique: PhantomData<fn() -> S>,
 }
 
 impl<S: Soft> Describe for Summed<S> {
@@ -121,6 +121,14 @@ impl<S: Soft> Technique for Summed<S> {
         });
         recorder.compute("soft lookup", &self.soften, &set, Work::Indirect(&list.buffer, 0));
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let map = self.depth.iter().map(|d| d.casters.inner_picture());
+        map.chain(self.pyramid.iter().flat_map(DepthPyramid::inner_pictures))
+            .chain(self.table.iter().map(SummedArea::inner_picture))
+            .chain(self.list.iter().map(PenumbraList::inner_picture))
+            .collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

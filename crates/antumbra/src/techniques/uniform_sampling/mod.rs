@@ -8,7 +8,7 @@ pub use pattern::{Pattern, Sample, Weights, samples};
 use crate::passes::light_maps::{Drawn, Entry, Evaluation, LightMaps, LightSamples, MapSlot, MapStage};
 use crate::recorder::Recorder;
 use crate::resource::{UniformArray, storage_bytes, storage_of};
-use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
+use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, settings::Kind};
 use glam::Vec2;
 
@@ -160,6 +160,11 @@ impl Technique for UniformSampling {
         self.drawn_count = if still_there { 0 } else { plan.places.len() };
         self.drawn = Some(now);
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let maps = self.maps.iter().map(LightMaps::inner_picture);
+        maps.chain(self.plan.iter().map(|p| InnerPicture::of_light_points(&p.places))).collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

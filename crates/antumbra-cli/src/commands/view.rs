@@ -1,0 +1,24 @@
+//! `antumbra view`: techniques in a window.
+
+use crate::cli::ViewArgs;
+use crate::error::CliError;
+use antumbra_viewer::Options;
+
+/// Opens the window; ends when it is closed.
+pub fn run(args: &ViewArgs) -> Result<(), CliError> {
+    // Ctrl-C is a request to stop that long work looks for: a window is closed on the spot.
+    std::thread::spawn(|| {
+        while !crate::progress::cancelled().load(std::sync::atomic::Ordering::Relaxed) {
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
+        std::process::exit(130);
+    });
+    let options = Options {
+        scene: args.scene.clone(),
+        specs: args.techniques.iter().map(|t| t.0.clone()).collect(),
+        adapter: args.adapter.clone().unwrap_or_default(),
+        size: args.size.map(|s| s.0),
+        commands: args.commands,
+    };
+    Ok(antumbra_viewer::run(options)?)
+}

@@ -1,0 +1,366 @@
+//! The program around the controls.
+
+use crate::commands::{Answer, Command, State, apply};
+use crate::desk::Desk;
+use crate::light;
+use crate::open::Source;
+use crate::save::{self, Saving};
+use crate::session::Session;
+use crate::ui::{self, Memory, Save, Wishes};
+use antumbra::Gpu;
+use eframe::egui;
+use eframe::egui_wgpu::RenderState;
+use std::collections::VecDeque;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, channel};
+use std::sync::{Arc, Mutex};
+
+/// What outlives a lost device.
+pub struct Kept {
+    /// What the user has chosen.
+    pub desk: Desk,
+    /// The scene to open first.
+    pub first: Option<Source>,
+    /// Commands that wait, each with where its answer goes.
+    pub commands: Arc<Mutex<VecDeque<Asked>>>,
+    /// GPU errors that nobody expected.
+    pub faults: Arc<Mutex<Vec<String>>>,
+    /// Times that the device was lost.
+    pub lost: u32,
+    /// True if the window shall open again.
+    pub again: bool,
+}
+
+/// A command and its asker.
+pub struct Asked {
+    /// What is asked.
+    pub command: Command,
+    /// Takes the answer.
+    pub answer: Box<dyn FnOnce(Answer) + Send>,
+}
+
+/// Where what outlives the device lies while the device lives.
+pub type Keep = Arc<Mutex<Option<Kept>>>;
+
+/// The program.
+pub struct App {
+    kept: Kept,
+    keep: Keep,
+    session: Session,
+    memory: Memory,
+    render: RenderState,
+    lost: Arc<AtomicBool>,
+    dropped: Vec<PathBuf>,
+    saving: Option<(Saving, Vec<Vec<u8>>)>,
+    screenshot: Option<(Receiver<Arc<egui::ColorImage>>, Option<PathBuf>, Option<Answerer>)>,
+    /// Frames that nothing has been under way.
+    idle: u32,
+}
+
+type Answerer = Box<dyn FnOnce(Answer) + Send>;
+
+impl App {
+    /// On the device that eframe has opened.
+    pub fn new(context: &eframe::CreationContext, keep: Keep) -> Result<App, String> {
+        let kept = keep.lock().ok().and_then(|mut k| k.take()).ok_or("the viewer is open already")?;
+        let render =
+            context.wgpu_render_state.clone().ok_or("there is no graphics adapter that draws to this window")?;
+        let gpu = Gpu::from_host(render.device.clone(), render.queue.clone());
+        ui::style::apply(&context.egui_ctx);
+        let lost = Arc::new(AtomicBool::new(false));
+        watch(&gpu, &context.egui_ctx, &kept, &lost);
+        let session = Session::new(gpu, context.egui_ctx.clone()).map_err(|e| e.to_string())?;
+        let mut app = App {
+            kept,
+            keep,
+            session,
+            memory: Memory::default(),
+            render,
+            lost,
+            dropped: Vec::new(),
+            saving: None,
+            screenshot: None,
+            idle: 0,
+        };
+        let source = app.kept.first.take().or_else(|| app.kept.desk.open.clone().map(Source::Again));
+        if let Some(source) = source {
+            app.session.open(source);
+        }
+        if app.kept.lost > 0 {
+            app.memory.notices.done("The graphics device was lost; everything was set up again.");
+        }
+        Ok(app)
+    }
+
+    /// True once the device is gone. It tells only those who ask.
+    fn is_lost(&self) -> bool {
+        // Whether it is there is heard by the callback.
+        let _ = self.session.gpu.device.poll(wgpu::PollType::Poll);
+        self.lost.load(Ordering::Relaxed)
+    }
+
+    /// What is on the screen, as text.
+    fn state(&self, pixels_per_point: f32) -> State {
+        let (desk, session) = (&self.kept.desk, &self.session);
+        let halves = &session.halves;
+        let handles =
+            self.memory.area.map_or_else(Vec::new, |area| light::handles(&desk.light, &ui::screen(desk, area)));
+        let error = |h: &crate::session::Half| h.measured.figures.as_ref()?.as_ref().ok().map(|f| f.average_error);
+        State {
+            scene: desk.open.as_ref().filter(|_| session.stage.is_some()).map(|o| o.source.clone()),
+            drawn: [0, 1].map(|i| halves[i].made.as_ref().map(|m| m.0.text())),
+            failed: [0, 1].map(|i| halves[i].failed.as_ref().map(|f| f.1.clone())),
+            average_error: [0, 1].map(|i| error(&halves[i])),
+            errors: self.memory.notices.errors().map(str::to_owned).collect(),
+            faults: self.kept.faults.lock().map_or_else(|_| Vec::new(), |f| f.clone()),
+            frames: session.drawn,
+            lost: self.kept.lost,
+            picture: session.canvas.as_ref().map(|c| c.size),
+            inner: [0, 1].map(|i| {
+                let made = halves[i].made.iter();
+                made.flat_map(|m| m.1.inner_pictures()).map(|p| p.name).collect()
+            }),
+            light: (desk.light.center.to_array(), desk.light.size.to_array()),
+            handles: handles.into_iter().map(|(h, p)| (format!("{h:?}"), (p * pixels_per_point).to_array())).collect(),
+            truth: session.truth.as_ref().and_then(|t| t.picture.lock().ok().map(|p| p.done())),
+            milliseconds: [0, 1].map(|i| halves[i].times.median_total()),
+        }
+    }
+
+    /// Does what was asked from outside, in order; what has to wait holds up what comes after it.
+    fn obey(&mut self, ctx: &egui::Context) {
+        let is_idle = self.session.is_idle(&self.kept.desk) && self.saving.is_none();
+        self.idle = if is_idle { self.idle + 1 } else { 0 };
+        while self.screenshot.is_none() {
+            let Some(next) = self.kept.commands.lock().ok().and_then(|mut q| q.pop_front()) else { return };
+            if matches!(next.command, Command::Wait) && self.idle < 3 {
+                ctx.request_repaint_after(std::time::Duration::from_millis(20));
+                if let Ok(mut queue) = self.kept.commands.lock() {
+                    queue.push_front(next);
+                }
+                return;
+            }
+            self.idle = 0;
+            self.obey_one(ctx, next);
+            ctx.request_repaint();
+        }
+    }
+
+    fn obey_one(&mut self, ctx: &egui::Context, asked: Asked) {
+        let mut answer = Answer::default();
+        match apply(asked.command, &mut self.kept.desk) {
+            Err(error) => answer.error = Some(error),
+            Ok(None | Some(Command::Wait)) => {}
+            Ok(Some(Command::Open(source))) => self.session.open(Source::Argument(source)),
+            Ok(Some(Command::Drop(path))) => self.dropped.push(path),
+            Ok(Some(Command::State)) => answer.state = Some(self.state(ctx.pixels_per_point())),
+            Ok(Some(Command::Dismiss)) => self.memory.notices.clear(),
+            Ok(Some(Command::LoseDevice)) => self.session.gpu.device.destroy(),
+            Ok(Some(Command::Zoom(zoom))) => ctx.set_zoom_factor(zoom.clamp(0.3, 4.0)),
+            Ok(Some(Command::Close)) => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Ok(Some(Command::SaveScene(path))) => {
+                let text = save::scene_text(&self.kept.desk, &self.session);
+                answer.error = text.and_then(|t| std::fs::write(&path, t).map_err(|e| e.to_string())).err();
+            }
+            Ok(Some(Command::Screenshot(path))) => {
+                self.take_screenshot(ctx, Some(path), Some(asked.answer));
+                return;
+            }
+            Ok(Some(other)) => answer.error = Some(format!("{other:?} changes nothing")),
+        }
+        (asked.answer)(answer);
+    }
+
+    fn take_screenshot(&mut self, ctx: &egui::Context, path: Option<PathBuf>, answer: Option<Answerer>) {
+        let (send, receive) = channel();
+        let woken = ctx.clone();
+        ctx.request_screenshot(move |image| {
+            // Nobody waits where the window has closed.
+            let _ = send.send(image);
+            woken.request_repaint();
+        });
+        self.screenshot = Some((receive, path, answer));
+    }
+
+    /// Writes a screenshot and a saved picture once they have come.
+    fn finish_saving(&mut self, ctx: &egui::Context) {
+        if let Some(image) = self.screenshot.as_ref().and_then(|(receive, ..)| receive.try_recv().ok()) {
+            let (_, path, answer) = self.screenshot.take().unwrap_or_else(|| unreachable!("just looked at"));
+            let rgba: Vec<u8> = image.pixels.iter().flat_map(|p| p.to_array()).collect();
+            let size = [image.size[0] as u32, image.size[1] as u32];
+            let png = crate::export::png(size, &rgba).map_err(|e| e.to_string());
+            let kept = png.and_then(|png| match path {
+                Some(path) => {
+                    std::fs::write(&path, png).map(|()| path.display().to_string()).map_err(|e| e.to_string())
+                }
+                None => save::keep("antumbra-window", "png", &png),
+            });
+            match answer {
+                Some(answer) => answer(Answer { error: kept.err(), state: None }),
+                None => self.say_kept(kept),
+            }
+        } else if self.screenshot.is_some() {
+            ctx.request_repaint();
+        }
+        let saved = self.saving.as_mut().and_then(|(saving, parts)| saving.poll(parts));
+        if let Some(png) = saved {
+            self.saving = None;
+            self.say_kept(png.and_then(|png| save::keep("antumbra", "png", &png)));
+        } else if self.saving.is_some() {
+            ctx.request_repaint();
+        }
+    }
+
+    fn say_kept(&mut self, kept: Result<String, String>) {
+        match kept {
+            Ok(place) => self.memory.notices.done(format!("saved {place}")),
+            Err(error) => self.memory.notices.error(error),
+        }
+    }
+
+    fn grant(&mut self, ctx: &egui::Context, wishes: Wishes) {
+        if let Some(source) = wishes.open {
+            self.session.open(source);
+        }
+        let desk = &self.kept.desk;
+        match wishes.save {
+            None => {}
+            Some(Save::Picture) => {
+                self.saving = Saving::start(desk, &self.session).map(|saving| (saving, Vec::new()));
+            }
+            Some(Save::Window) => self.take_screenshot(ctx, None, None),
+            Some(Save::Scene) => {
+                let kept = save::scene_text(desk, &self.session)
+                    .and_then(|text| save::keep("antumbra-scene", "toml", text.as_bytes()));
+                self.say_kept(kept);
+            }
+            Some(Save::Spec(half)) => {
+                let text = desk.choices[half].text();
+                ctx.copy_text(text.clone());
+                self.memory.notices.done(format!("copied: {text}"));
+            }
+            Some(Save::Command(half)) => self.copy_command(ctx, half),
+        }
+    }
+
+    /// The command line that draws what is seen; from a scene file of its own if camera or light were moved.
+    fn copy_command(&mut self, ctx: &egui::Context, half: usize) {
+        let desk = &self.kept.desk;
+        let (Some(open), Some(canvas)) = (&desk.open, &self.session.canvas) else { return };
+        let scene = if desk.is_as_opened() {
+            Ok(open.source.clone())
+        } else {
+            save::scene_text(desk, &self.session).and_then(|text| save::keep("antumbra-scene", "toml", text.as_bytes()))
+        };
+        match scene {
+            Ok(scene) => {
+                let command = crate::export::command(&scene, &desk.choices[half].text(), canvas.size);
+                ctx.copy_text(command.clone());
+                self.memory.notices.done(format!("copied: {command}"));
+            }
+            Err(error) => self.memory.notices.error(error),
+        }
+    }
+
+    /// Opens what was dropped on the window.
+    fn take_dropped(&mut self, ctx: &egui::Context) {
+        let files = ctx.input(|i| i.raw.dropped_files.clone());
+        let Some(file) = files.first() else { return };
+        if files.len() > 1 {
+            self.memory.notices.done(format!("{} files were dropped; the first is opened", files.len()));
+        }
+        self.session.open(Source::Argument(file.path().display().to_string()));
+    }
+}
+
+impl eframe::App for App {
+    fn raw_input_hook(&mut self, _ctx: &egui::Context, input: &mut egui::RawInput) {
+        input.dropped_files.extend(self.dropped.drain(..).map(|path| Arc::new(DroppedPath(path)) as _));
+    }
+
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        if self.is_lost() {
+            crate::restart(ctx);
+            return;
+        }
+        for message in self.session.work(&mut self.kept.desk) {
+            if message != "cancelled" {
+                self.memory.notices.error(message);
+            }
+        }
+        self.obey(ctx);
+    }
+
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        if self.is_lost() {
+            return;
+        }
+        let ctx = ui.ctx().clone();
+        self.take_dropped(&ctx);
+        let wishes = ui::show(ui, &self.render, &mut self.kept.desk, &mut self.session, &mut self.memory);
+        self.grant(&ctx, wishes);
+        self.finish_saving(&ctx);
+        let faults: Vec<String> = self.kept.faults.lock().map_or_else(|_| Vec::new(), |f| f.clone());
+        for fault in faults.iter().skip(self.memory.faults_shown) {
+            self.memory.notices.error(fault.as_str());
+        }
+        self.memory.faults_shown = faults.len();
+        if self.is_lost() {
+            // egui's renderer panics where it has something to draw and no device: it gets nothing.
+            ctx.graphics_mut(|layers| *layers = Default::default());
+            ctx.request_repaint();
+        }
+    }
+}
+
+impl Drop for App {
+    /// Hands back what outlives the device.
+    fn drop(&mut self) {
+        let lost = self.is_lost();
+        let outlives = Kept {
+            desk: self.kept.desk.clone(),
+            first: None,
+            commands: self.kept.commands.clone(),
+            faults: self.kept.faults.clone(),
+            lost: self.kept.lost + u32::from(lost),
+            again: lost,
+        };
+        if let Ok(mut keep) = self.keep.lock() {
+            *keep = Some(outlives);
+        }
+    }
+}
+
+/// Collects errors that nobody waits for, and notes when the device goes away.
+fn watch(gpu: &Gpu, ctx: &egui::Context, kept: &Kept, lost: &Arc<AtomicBool>) {
+    let (flag, woken) = (lost.clone(), ctx.clone());
+    gpu.device.set_device_lost_callback(move |_, _| {
+        flag.store(true, Ordering::Relaxed);
+        woken.request_repaint();
+    });
+    let (faults, lost, woken) = (kept.faults.clone(), lost.clone(), ctx.clone());
+    gpu.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+        // What fails because the device is gone is no fault.
+        if !lost.load(Ordering::Relaxed)
+            && let Ok(mut faults) = faults.lock()
+        {
+            faults.push(format!("GPU error, which is a bug in antumbra: {error}"));
+        }
+        woken.request_repaint();
+    }));
+}
+
+/// A path that came by a command instead of by the mouse.
+#[derive(Debug)]
+struct DroppedPath(PathBuf);
+
+impl egui::DroppedFile for DroppedPath {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|e| e.to_string())
+    }
+}

@@ -1,0 +1,58 @@
+//! Fitting the shadow frustum: at once for small scenes, in the background for large ones.
+
+use crate::job::Job;
+use antumbra::{RectLight, ShadowFrustum, View};
+use antumbra_scene::{Instance, Scene};
+
+/// Triangles that are fitted within a frame.
+const AT_ONCE: usize = 60_000;
+
+/// What a frustum was fitted to; the number counts poses.
+pub type Fit = (View, RectLight, u64);
+
+/// Keeps the last frustum, and a copy of the scene to measure.
+pub struct Fitter {
+    triangles: usize,
+    scene: Option<Box<Scene>>,
+    fitted: Option<(Fit, ShadowFrustum)>,
+    job: Option<Job<(Box<Scene>, Fit, ShadowFrustum)>>,
+}
+
+impl Fitter {
+    /// For this scene.
+    pub fn new(scene: &Scene) -> Fitter {
+        let copy = Some(Box::new(scene.clone()));
+        Fitter { triangles: scene.triangle_count(), scene: copy, fitted: None, job: None }
+    }
+
+    /// The frustum for `what`, with the scene's instances where they stand now; none while it is looked for.
+    pub fn fit(
+        &mut self,
+        what: Fit,
+        instances: &[Instance],
+        wake: impl Fn() + Send + 'static,
+    ) -> Option<ShadowFrustum> {
+        if let Some(Ok((scene, fit, frustum))) = self.job.as_ref().and_then(Job::poll) {
+            (self.scene, self.fitted, self.job) = (Some(scene), Some((fit, frustum)), None);
+        }
+        if let Some((fit, frustum)) = &self.fitted
+            && *fit == what
+        {
+            return Some(*frustum);
+        }
+        // None while a job has it: the next is begun when that one ends.
+        let mut scene = self.scene.take()?;
+        scene.light = what.1;
+        scene.instances.clone_from_slice(instances);
+        if self.triangles <= AT_ONCE {
+            let frustum = ShadowFrustum::fit(&scene, &what.0);
+            (self.scene, self.fitted) = (Some(scene), Some((what, frustum)));
+            return Some(frustum);
+        }
+        self.job = Some(Job::start("Fitting the shadow map", wake, move |_| async move {
+            let frustum = ShadowFrustum::fit(&scene, &what.0);
+            (scene, what, frustum)
+        }));
+        None
+    }
+}

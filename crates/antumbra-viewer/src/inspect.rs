@@ -1,0 +1,178 @@
+//! Looking into a technique: its maps and lists as pictures.
+
+use crate::readback::Readback;
+use antumbra::Gpu;
+use antumbra::resource::Texture;
+use antumbra::technique::{InnerContent, InnerPicture};
+
+/// Pixels a side of what is shown.
+const SIDE: u32 = 512;
+
+/// Which part of a texture is looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Part {
+    /// Array layer.
+    pub layer: u32,
+    /// Mip level.
+    pub level: u32,
+    /// 0 to 3.
+    pub channel: u32,
+}
+
+/// What parts a texture has: layers, levels, channels.
+pub fn parts(texture: &wgpu::Texture) -> [u32; 3] {
+    let channels = u32::from(texture.format().components());
+    [texture.depth_or_array_layers(), texture.mip_level_count(), channels]
+}
+
+/// True if it can be shown: depth or float texels, one sample each.
+pub fn is_shown(picture: &InnerPicture) -> bool {
+    let InnerContent::Texture(t) = &picture.content else { return true };
+    let kind = t.format().sample_type(None, None);
+    let readable = matches!(kind, Some(wgpu::TextureSampleType::Float { .. } | wgpu::TextureSampleType::Depth));
+    readable && t.sample_count() == 1 && t.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING)
+}
+
+/// Draws what a technique lists.
+pub struct Inspector {
+    /// `Rgba8Unorm`, what is shown.
+    pub shown: Texture,
+    /// Smallest and largest value of the texture that was drawn last, zeros apart.
+    pub range: Option<[f32; 2]>,
+    measure: wgpu::ComputePipeline,
+    show_values: wgpu::ComputePipeline,
+    clear: wgpu::ComputePipeline,
+    show_list: wgpu::ComputePipeline,
+    look: wgpu::Buffer,
+    measured: wgpu::Buffer,
+    readback: Option<Readback>,
+}
+
+impl Inspector {
+    /// Compiles what it needs.
+    pub fn new(gpu: &Gpu) -> Inspector {
+        let module = gpu.device.create_shader_module(wgpu::include_wgsl!("inspect.wgsl"));
+        let pipeline = |entry: &'static str, layout: Option<&wgpu::PipelineLayout>| {
+            gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some(entry),
+                layout,
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: Default::default(),
+                cache: None,
+            })
+        };
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        let layout = values_layout(gpu);
+        let buffer = |label, size, usage| {
+            let mapped_at_creation = false;
+            gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation })
+        };
+        Inspector {
+            shown: Texture::new(gpu, "inner picture", [SIDE; 2], 1, wgpu::TextureFormat::Rgba8Unorm, usage),
+            range: None,
+            measure: pipeline("measure", Some(&layout)),
+            show_values: pipeline("show_values", Some(&layout)),
+            clear: pipeline("clear", None),
+            show_list: pipeline("show_list", None),
+            look: buffer("look", 32, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
+            measured: buffer("range", 8, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
+            readback: None,
+        }
+    }
+
+    /// Draws a texture's part or a list.
+    pub fn draw(&mut self, gpu: &Gpu, picture: &InnerPicture, part: Part) {
+        match &picture.content {
+            InnerContent::Texture(texture) => self.draw_texture(gpu, texture, part),
+            InnerContent::Pixels { list, size } => self.draw_list(gpu, list, *size),
+            InnerContent::LightPoints(_) => self.range = None,
+        }
+    }
+
+    /// Takes what was measured once it has come.
+    pub fn poll(&mut self) {
+        if let Some(values) = self.readback.as_ref().and_then(Readback::poll_numbers) {
+            let range = <[f32; 2]>::try_from(values).ok();
+            (self.range, self.readback) = (range.filter(|[low, high]| low <= high), None);
+        }
+    }
+
+    fn draw_texture(&mut self, gpu: &Gpu, texture: &wgpu::Texture, part: Part) {
+        gpu.queue.write_buffer(&self.look, 0, bytemuck::cast_slice(&[part.layer, part.level, part.channel, 0, 0]));
+        let dimension = Some(wgpu::TextureViewDimension::D2Array);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor { dimension, ..Default::default() });
+        let entries = [
+            entry(0, self.look.as_entire_binding()),
+            entry(1, self.measured.as_entire_binding()),
+            entry(2, wgpu::BindingResource::TextureView(&view)),
+            entry(3, wgpu::BindingResource::TextureView(&self.shown.view)),
+        ];
+        self.run(gpu, &[(&self.measure, [1, 1]), (&self.show_values, [SIDE / 8; 2])], &[&entries, &entries]);
+        if self.readback.is_none() {
+            self.readback = Some(Readback::of_buffer(gpu, &self.measured, 2));
+        }
+    }
+
+    fn draw_list(&mut self, gpu: &Gpu, list: &wgpu::Buffer, size: [u32; 2]) {
+        gpu.queue.write_buffer(&self.look, 0, bytemuck::cast_slice(&[0, 0, 0, size[0], size[1]]));
+        self.range = None;
+        let shown = || wgpu::BindingResource::TextureView(&self.shown.view);
+        let listed = [entry(0, self.look.as_entire_binding()), entry(3, shown()), entry(4, list.as_entire_binding())];
+        let groups = (size[0] * size[1]).div_ceil(64);
+        let rows = groups.div_ceil(4096);
+        let steps = [(&self.clear, [SIDE / 8; 2]), (&self.show_list, [groups.div_ceil(rows), rows])];
+        self.run(gpu, &steps, &[&[entry(3, shown())], &listed]);
+    }
+
+    fn run(&self, gpu: &Gpu, steps: &[(&wgpu::ComputePipeline, [u32; 2])], groups: &[&[wgpu::BindGroupEntry]]) {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        for ((pipeline, [x, y]), entries) in steps.iter().zip(groups) {
+            let layout = &pipeline.get_bind_group_layout(0);
+            let group = wgpu::BindGroupDescriptor { label: Some("inner picture"), layout, entries };
+            let group = gpu.device.create_bind_group(&group);
+            let mut pass = encoder.begin_compute_pass(&Default::default());
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(0, &group, &[]);
+            pass.dispatch_workgroups(*x, *y, 1);
+        }
+        gpu.queue.submit([encoder.finish()]);
+    }
+}
+
+fn entry(binding: u32, resource: wgpu::BindingResource) -> wgpu::BindGroupEntry {
+    wgpu::BindGroupEntry { binding, resource }
+}
+
+/// Written out: depth textures are read as floats that are not filtered, and both steps take the same bindings.
+fn values_layout(gpu: &Gpu) -> wgpu::PipelineLayout {
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let kinds = [
+        buffer(wgpu::BufferBindingType::Uniform),
+        buffer(wgpu::BufferBindingType::Storage { read_only: false }),
+        wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: false },
+            view_dimension: wgpu::TextureViewDimension::D2Array,
+            multisampled: false,
+        },
+        wgpu::BindingType::StorageTexture {
+            access: wgpu::StorageTextureAccess::WriteOnly,
+            format: wgpu::TextureFormat::Rgba8Unorm,
+            view_dimension: wgpu::TextureViewDimension::D2,
+        },
+    ];
+    let entry = |(ty, binding)| wgpu::BindGroupLayoutEntry {
+        binding,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty,
+        count: None,
+    };
+    let entries: Vec<_> = kinds.into_iter().zip(0u32..).map(entry).collect();
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("inner picture"), entries: &entries };
+    let group = gpu.device.create_bind_group_layout(&descriptor);
+    gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: Some("inner picture"),
+        bind_group_layouts: &[Some(&group)],
+        immediate_size: 0,
+    })
+}

@@ -1,0 +1,90 @@
+// Looking into a technique: a layer of a texture as grey between its smallest and largest value, or a list of pixels.
+
+struct Look {
+    layer: u32,
+    level: u32,
+    channel: u32,
+    // Of the list's picture.
+    width: u32,
+    height: u32,
+}
+
+struct Range {
+    low: f32,
+    high: f32,
+}
+
+@group(0) @binding(0) var<uniform> look: Look;
+@group(0) @binding(1) var<storage, read_write> range: Range;
+@group(0) @binding(2) var values: texture_2d_array<f32>;
+@group(0) @binding(3) var shown: texture_storage_2d<rgba8unorm, write>;
+@group(0) @binding(4) var<storage, read> list: array<u32>;
+
+// Samples a side that the range is measured on.
+const SAMPLES: u32 = 128u;
+
+var<workgroup> lows: array<f32, 256>;
+var<workgroup> highs: array<f32, 256>;
+
+fn value_at(at: vec2<u32>) -> f32 {
+    return textureLoad(values, at, look.layer, look.level)[look.channel];
+}
+
+// What is exactly 0 is nothing at all in most maps, and infinities and what is not a number have no place in a range.
+fn counts(v: f32) -> bool {
+    let exponent = (bitcast<u32>(v) >> 23u) & 0xffu;
+    return v != 0.0 && exponent != 0xffu;
+}
+
+@compute @workgroup_size(256)
+fn measure(@builtin(local_invocation_index) lane: u32) {
+    let size = textureDimensions(values, look.level);
+    var low = 3e38;
+    var high = -3e38;
+    for (var i = lane; i < SAMPLES * SAMPLES; i += 256u) {
+        let v = value_at(vec2(i % SAMPLES, i / SAMPLES) * size / SAMPLES);
+        if counts(v) {
+            low = min(low, v);
+            high = max(high, v);
+        }
+    }
+    lows[lane] = low;
+    highs[lane] = high;
+    workgroupBarrier();
+    if lane == 0u {
+        for (var i = 0u; i < 256u; i++) {
+            low = min(low, lows[i]);
+            high = max(high, highs[i]);
+        }
+        range.low = low;
+        range.high = high;
+    }
+}
+
+@compute @workgroup_size(8, 8)
+fn show_values(@builtin(global_invocation_id) pixel: vec3<u32>) {
+    let size = textureDimensions(shown);
+    if any(pixel.xy >= size) {
+        return;
+    }
+    let v = value_at(pixel.xy * textureDimensions(values, look.level) / size);
+    let grey = clamp((v - range.low) / max(range.high - range.low, 1e-30), 0.0, 1.0);
+    let color = select(vec3(0.13, 0.16, 0.28), vec3(0.08 + 0.92 * grey), counts(v));
+    textureStore(shown, pixel.xy, vec4(color, 1.0));
+}
+
+@compute @workgroup_size(8, 8)
+fn clear(@builtin(global_invocation_id) pixel: vec3<u32>) {
+    textureStore(shown, pixel.xy, vec4(0.13, 0.16, 0.28, 1.0));
+}
+
+@compute @workgroup_size(64)
+fn show_list(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = id.x + id.y * groups.x * 64u;
+    if k >= list[3] {
+        return;
+    }
+    let entry = list[4u + 2u * k];
+    let at = vec2(entry & 0xffffu, entry >> 16u);
+    textureStore(shown, at * textureDimensions(shown) / vec2(look.width, look.height), vec4(1.0, 0.78, 0.3, 1.0));
+}

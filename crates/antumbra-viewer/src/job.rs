@@ -1,0 +1,166 @@
+//! Long work off the frame, on threads of its own.
+
+use std::future::Future;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
+use std::sync::{Arc, Mutex};
+use std::time::Instant;
+
+/// Work under way. Dropping it asks it to stop; what it still finds is thrown away.
+pub struct Job<T> {
+    /// What is done, for people.
+    pub title: String,
+    started: Instant,
+    status: Status,
+    receiver: Receiver<Result<T, Died>>,
+}
+
+/// What the work says of itself, and whether it shall go on.
+#[derive(Clone, Default)]
+pub struct Status {
+    step: Arc<Mutex<String>>,
+    cancelled: Arc<AtomicBool>,
+}
+
+impl Status {
+    /// Says what comes next; false once nobody waits for it any more.
+    pub fn step(&self, what: &str) -> bool {
+        what.clone_into(&mut self.step.lock().expect("only text is moved under the lock"));
+        !self.is_cancelled()
+    }
+
+    /// True once nobody waits for the result.
+    pub fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+impl<T: Send + 'static> Job<T> {
+    /// Starts `work`; `wake` is called when there is something to show.
+    pub fn start<F: Future<Output = T>>(
+        title: impl Into<String>,
+        wake: impl Fn() + Send + 'static,
+        work: impl FnOnce(Status) -> F + Send + 'static,
+    ) -> Job<T>
+    where
+        F: 'static,
+    {
+        let (send, receiver) = channel();
+        let status = Status::default();
+        let own = status.clone();
+        let done = move |result| {
+            // Nobody waits for it any more: that is what cancelling means.
+            let _ = send.send(result);
+            wake();
+        };
+        run(move || work(own), done);
+        Job { title: title.into(), started: Instant::now(), status, receiver }
+    }
+}
+
+impl<T> Job<T> {
+    /// What came out, once.
+    pub fn poll(&self) -> Option<Result<T, Died>> {
+        match self.receiver.try_recv() {
+            Ok(result) => Some(result),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Err(Died("it went away".to_owned()))),
+        }
+    }
+
+    /// The step that it is at.
+    pub fn step(&self) -> String {
+        self.status.step.lock().expect("only text is moved under the lock").clone()
+    }
+
+    /// Seconds since the start.
+    pub fn seconds(&self) -> f32 {
+        self.started.elapsed().as_secs_f32()
+    }
+}
+
+impl<T> Drop for Job<T> {
+    fn drop(&mut self) {
+        self.status.cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+/// The work ended without a result: a bug of ours, unless the device is lost.
+#[derive(Debug, thiserror::Error)]
+#[error("the work broke off, which is a bug in antumbra, please report it: {0}")]
+pub struct Died(String);
+
+/// Name of the threads that work.
+pub const THREAD: &str = "antumbra job";
+
+fn run<T, F: Future<Output = T>>(
+    work: impl FnOnce() -> F + Send + 'static,
+    done: impl FnOnce(Result<T, Died>) + Send + 'static,
+) {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+    let work = move || {
+        let result = catch_unwind(AssertUnwindSafe(|| pollster::block_on(work())));
+        done(result.map_err(|panic| {
+            let text = panic.downcast_ref::<String>().cloned();
+            Died(text.or(panic.downcast_ref::<&str>().map(|t| (*t).to_owned())).unwrap_or_default())
+        }));
+    };
+    let started = std::thread::Builder::new().name(THREAD.to_owned()).spawn(work);
+    // Without a thread the channel closes, and the owner says so.
+    drop(started);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ended<T>(job: &Job<T>) -> Result<T, Died> {
+        loop {
+            if let Some(result) = job.poll() {
+                return result;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(1));
+        }
+    }
+
+    #[test]
+    fn a_result_comes_and_a_panic_is_told() {
+        let work = Job::start(
+            "seven",
+            || (),
+            |status| async move {
+                status.step("counting");
+                7
+            },
+        );
+        assert_eq!((ended(&work).unwrap(), work.step().as_str()), (7, "counting"));
+        let broken = Job::start(
+            "broken",
+            || (),
+            |_| async move {
+                if true {
+                    panic!("nothing there")
+                }
+            },
+        );
+        assert!(ended(&broken).unwrap_err().to_string().contains("nothing there"));
+    }
+
+    #[test]
+    fn dropping_a_job_asks_it_to_stop() {
+        let (send, receive) = channel();
+        let job = Job::start(
+            "long",
+            || (),
+            move |status| async move {
+                while status.step("on") {
+                    std::thread::sleep(std::time::Duration::from_millis(1));
+                }
+                // The test waits for this.
+                let _ = send.send(());
+            },
+        );
+        drop(job);
+        receive.recv_timeout(std::time::Duration::from_secs(20)).expect("it ends");
+    }
+}

@@ -1,0 +1,32 @@
+//! The interactive viewer: techniques side by side, or beside the ray-traced truth, in a window.
+//!
+//! [`run`] opens the window. [`app`] is the program, [`ui`] its controls, [`session`] what goes on behind them: scenes are
+//! opened ([`open`]), techniques compiled, the truth traced ([`truth`]) and errors measured ([`figures`]) in the background
+//! ([`job`]). [`desk`] is what the user has chosen; it outlives the graphics device, which may be lost at any time.
+//! [`commands`] drive all of it from outside, for tests.
+#![deny(missing_docs)]
+
+pub mod app;
+pub mod camera;
+pub mod choice;
+pub mod commands;
+pub mod desk;
+pub mod export;
+pub mod figures;
+mod fitter;
+pub mod inspect;
+pub mod job;
+pub mod light;
+mod native;
+pub mod open;
+mod readback;
+mod save;
+pub mod session;
+pub mod show;
+pub mod stage;
+pub mod times;
+pub mod truth;
+pub mod ui;
+
+use native::restart;
+pub use native::{Options, WindowError, run};

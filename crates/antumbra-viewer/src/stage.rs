@@ -1,0 +1,238 @@
+//! A scene on the GPU, and the pictures of the two halves of the screen.
+
+use crate::fitter::Fitter;
+use crate::show::{Show, Shown};
+use antumbra::passes::{geometry_buffer::GeometryBuffer, picture::Picture};
+use antumbra::recorder::PassTime;
+use antumbra::resource::Texture;
+use antumbra::scene::Placed;
+use antumbra::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Technique, Timer, View};
+use antumbra::{casters::Role, frame};
+use antumbra_scene::{Aabb, Instance, Scene};
+use glam::{Affine3A, Quat, Vec3};
+use std::sync::Arc;
+
+/// A scene that is open.
+pub struct Stage {
+    /// As it was opened.
+    pub scene: Arc<Scene>,
+    /// Where everything stands now.
+    pub instances: Vec<Instance>,
+    /// Changes with the pose.
+    pub pose: u64,
+    /// Box around everything, where it stood at first.
+    pub bounds: Aabb,
+    /// Triangles over all instances.
+    pub triangles: usize,
+    placed: Placed,
+    casters: Arc<Casters>,
+    angle: f32,
+    fitter: Fitter,
+}
+
+impl Stage {
+    /// Uploads a scene and compiles what every picture needs. Takes a while: not for the thread that draws.
+    pub fn new(gpu: &Gpu, scene: Arc<Scene>, pose: u64) -> Result<Stage, Error> {
+        let placed = Placed::upload(gpu, &scene)?;
+        let casters = Arc::new(placed.casters.clone());
+        let stage = Stage {
+            bounds: scene.bounds(),
+            triangles: scene.triangle_count(),
+            instances: scene.instances.clone(),
+            fitter: Fitter::new(&scene),
+            scene,
+            pose,
+            placed,
+            casters,
+            angle: 0.0,
+        };
+        let small = Canvas::new(gpu, &stage, [8, 8])?;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut recorder = Recorder::new(gpu, &mut encoder);
+        small.geometry.record(&mut recorder, &stage.casters, &small.halves[0].frame.view)?;
+        small.halves[0].picture.record(&mut recorder, &small.halves[0].frame, &small.geometry)?;
+        Ok(stage)
+    }
+
+    /// Makes a technique and compiles all that it will need. Takes a while: not for the thread that draws.
+    pub async fn technique(
+        gpu: &Gpu,
+        scene: &Scene,
+        casters: Arc<Casters>,
+        spec: &antumbra::Spec,
+    ) -> Result<Box<dyn Technique>, Error> {
+        // One that is thrown away: it believes in maps that were recorded and never drawn.
+        gpu.checked(|| {
+            let small = Canvas::of(gpu, scene, casters, [8, 8])?;
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            spec.make(gpu)?.record(&small.halves[0].frame, &mut Recorder::new(gpu, &mut encoder))
+        })
+        .await?;
+        gpu.checked(|| spec.make(gpu)).await
+    }
+
+    /// What techniques are given.
+    pub fn casters(&self) -> Arc<Casters> {
+        self.casters.clone()
+    }
+
+    /// True if something can be moved.
+    pub fn has_occluders(&self) -> bool {
+        self.placed.roles.contains(&Role::Caster)
+    }
+
+    /// Turns all occluders about the vertical line through their middle, in radians from where they stood at first.
+    pub fn turn_occluders(&mut self, gpu: &Gpu, angle: f32, pose: u64) {
+        if angle == self.angle || !self.has_occluders() {
+            return;
+        }
+        let mut instances = self.scene.instances.clone();
+        let middle = self.placed.casters.occluder_bounds().center();
+        let turn = Affine3A::from_translation(middle)
+            * Affine3A::from_quat(Quat::from_axis_angle(Vec3::Y, angle))
+            * Affine3A::from_translation(-middle);
+        let occluders = instances.iter_mut().zip(&self.placed.roles).filter(|(_, role)| **role == Role::Caster);
+        for (instance, _) in occluders {
+            instance.world_from_object = turn * instance.world_from_object;
+        }
+        self.casters = Arc::new(self.placed.moved(gpu, &instances));
+        (self.instances, self.pose, self.angle) = (instances, pose, angle);
+    }
+
+    /// The scene with everything where it stands now, for tracing.
+    pub fn posed(&self) -> Arc<Scene> {
+        if self.angle == 0.0 {
+            return self.scene.clone();
+        }
+        Arc::new(Scene { instances: self.instances.clone(), ..Scene::clone(&self.scene) })
+    }
+
+    /// What shadow maps look at. Of a large scene it is a wide one until it could be fitted in the background: then
+    /// `wake` is called.
+    pub fn frustum(&mut self, view: View, light: RectLight, wake: impl Fn() + Send + 'static) -> ShadowFrustum {
+        let fitted = self.fitter.fit((view, light, self.pose), &self.instances, wake);
+        fitted.unwrap_or_else(|| ShadowFrustum::around(&light, &self.casters.bounds()))
+    }
+}
+
+/// Textures of one size: what both halves share and what each has.
+pub struct Canvas {
+    /// Pixels.
+    pub size: [u32; 2],
+    /// Surfaces, the host's part.
+    pub geometry: GeometryBuffer,
+    /// Left and right.
+    pub halves: [Half; 2],
+    /// `R32Float`: the truth as far as it is known; under 0 where errors are not measured.
+    pub truth: Texture,
+}
+
+/// One picture.
+pub struct Half {
+    /// What its technique is given.
+    pub frame: Frame,
+    /// `R32Float`: what its technique fills.
+    pub visibility: Texture,
+    /// What is shown.
+    pub picture: Picture,
+}
+
+const VALUES: wgpu::TextureUsages = wgpu::TextureUsages::STORAGE_BINDING
+    .union(wgpu::TextureUsages::TEXTURE_BINDING)
+    .union(wgpu::TextureUsages::COPY_SRC)
+    .union(wgpu::TextureUsages::COPY_DST);
+
+impl Canvas {
+    /// Empty pictures.
+    pub fn new(gpu: &Gpu, stage: &Stage, size: [u32; 2]) -> Result<Canvas, Error> {
+        Canvas::of(gpu, &stage.scene, stage.casters(), size)
+    }
+
+    fn of(gpu: &Gpu, scene: &Scene, casters: Arc<Casters>, size: [u32; 2]) -> Result<Canvas, Error> {
+        let geometry = GeometryBuffer::new(gpu, size)?;
+        let values = |label| Texture::new(gpu, label, size, 1, wgpu::TextureFormat::R32Float, VALUES);
+        let input = GeometryInput {
+            depth: geometry.depth.view.clone(),
+            normal: geometry.normal.view.clone(),
+            normal_error: frame::normal_error(geometry.normal.texture.format()),
+            size,
+        };
+        let view = View::of_camera(&scene.camera, size);
+        let half = |label| {
+            let visibility = values(label);
+            let input = input.clone();
+            let frame = Frame::new(gpu, casters.clone(), input, visibility.view.clone(), view, scene.light)?;
+            Ok::<_, Error>(Half { frame, visibility, picture: Picture::new(gpu, size) })
+        };
+        let halves = [half("visibility, left")?, half("visibility, right")?];
+        Ok(Canvas { size, halves, truth: values("truth"), geometry })
+    }
+
+    /// Moves camera, light and occluders.
+    pub fn update(&mut self, gpu: &Gpu, stage: &Stage, view: View, light: RectLight, frustum: ShadowFrustum) {
+        for half in &mut self.halves {
+            half.frame.casters = stage.casters();
+            half.frame.update(gpu, view, light, frustum);
+        }
+    }
+
+    /// GPU memory of the host's part, in bytes.
+    pub fn bytes(&self) -> u64 {
+        self.geometry.bytes()
+    }
+
+    /// Nothing is known of the truth any more.
+    pub fn forget_truth(&self, gpu: &Gpu) {
+        let nothing = vec![-2.0; self.size[0] as usize * self.size[1] as usize];
+        write(gpu, &self.truth, &nothing);
+    }
+
+    /// Uploads the truth: values under 0 where errors are not measured.
+    pub fn write_truth(&self, gpu: &Gpu, picture: &crate::truth::Picture) {
+        let values = picture.visibility.iter().zip(&picture.valid);
+        let marked: Vec<f32> = values.map(|(v, valid)| if *valid { *v } else { -1.0 - *v }).collect();
+        write(gpu, &self.truth, &marked);
+    }
+}
+
+impl Half {
+    /// Takes the truth for its visibility.
+    pub fn write_visibility(&self, gpu: &Gpu, values: &[f32]) {
+        write(gpu, &self.visibility, values);
+    }
+
+    /// Records the technique, if it has one, and what is shown of it; submits both.
+    pub fn draw(
+        &mut self,
+        gpu: &Gpu,
+        timer: &mut Timer,
+        technique: Option<&mut (dyn Technique + 'static)>,
+        geometry: &GeometryBuffer,
+        shown: (&Shown, Show, &Texture),
+    ) -> Result<(), Error> {
+        if let Some(technique) = technique {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            technique.record(&self.frame, &mut Recorder::timed(gpu, &mut encoder, timer))?;
+            timer.submit(gpu, encoder)?;
+        }
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let (pass, show, truth) = shown;
+        match show {
+            Show::Picture => self.picture.record(&mut Recorder::new(gpu, &mut encoder), &self.frame, geometry)?,
+            _ => pass.record(gpu, &mut encoder, show, &self.visibility, truth, &self.picture.texture),
+        }
+        gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }
+}
+
+fn write(gpu: &Gpu, texture: &Texture, values: &[f32]) {
+    let t = &texture.texture;
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(t.width() * 4), rows_per_image: None };
+    gpu.queue.write_texture(t.as_image_copy(), bytemuck::cast_slice(values), layout, t.size());
+}
+
+/// The milliseconds of all passes; none where one has none.
+pub fn total(times: &[PassTime]) -> Option<f64> {
+    times.iter().map(|(_, ms)| *ms).sum()
+}

@@ -1,0 +1,138 @@
+//! What is written over the picture: which technique is where, what it costs, how far it is off; the colour bar.
+
+use super::{numbers, panel, style};
+use crate::desk::{Compare, Desk};
+use crate::session::Session;
+use crate::show::Show;
+use antumbra_metrics::{HEAT_SCALE, heat_color};
+use eframe::egui::{self, Align2, Color32, FontId, Pos2, Rect, RichText, pos2, vec2};
+
+/// Labels in the upper corners, and the colour bar below where errors are shown.
+pub fn show(ui: &mut egui::Ui, area: Rect, desk: &mut Desk, session: &mut Session) {
+    // A window may be as small as a title bar.
+    if area.width() < 60.0 || area.height() < 60.0 {
+        return;
+    }
+    if session.stage.is_some() {
+        let middle = area.left() + area.width() * desk.divider;
+        let is_split = desk.compare != Compare::One;
+        label(ui, area, area.left_top(), Align2::LEFT_TOP, |ui| technique(ui, desk, session, 0));
+        if is_split {
+            let corner = pos2(area.right(), area.top());
+            let is_narrow = area.right() - middle < 60.0;
+            if !is_narrow {
+                label(ui, area, corner, Align2::RIGHT_TOP, |ui| match desk.compare {
+                    Compare::Two => technique(ui, desk, session, 1),
+                    _ => truth(ui, session),
+                });
+            }
+        }
+    }
+    if desk.show == Show::Error {
+        color_bar(ui, area);
+    }
+}
+
+fn label(ui: &egui::Ui, area: Rect, corner: Pos2, pivot: Align2, content: impl FnOnce(&mut egui::Ui)) {
+    let inwards = if pivot == Align2::LEFT_TOP { vec2(10.0, 10.0) } else { vec2(-10.0, 10.0) };
+    egui::Area::new(ui.scope_id().with(("label", pivot.x() == egui::Align::Min)))
+        .order(egui::Order::Middle)
+        .pivot(pivot)
+        .fixed_pos(corner + inwards)
+        .constrain_to(area)
+        .show(ui.ctx(), |ui| style::card().show(ui, content));
+}
+
+fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: usize) {
+    ui.set_max_width(280.0);
+    let choice = &mut desk.choices[half];
+    let name = RichText::new(choice.technique.name).strong().size(15.0).color(style::ON_PICTURE);
+    let button = egui::Button::new((name, egui::containers::menu::SubMenuButton::arrow_atom(None))).frame(false);
+    let menu = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| panel::pick(ui, choice));
+    menu.0.on_hover_text("Another technique");
+    ui.label(RichText::new(choice.technique.title).small().color(Color32::from_gray(190)));
+    let state = &mut session.halves[half];
+    let mut facts = Vec::new();
+    if !state.times.frames.is_empty() && !state.times.untimed {
+        facts.push(numbers::milliseconds(state.times.median_total()));
+    }
+    if let Some(Ok(figures)) = state.measured.figures.as_ref().filter(|_| session.truth.is_some()) {
+        facts.push(format!("error {:.4}", figures.average_error));
+    }
+    if !facts.is_empty() {
+        ui.label(RichText::new(facts.join("   ")).monospace().color(style::ON_PICTURE));
+    }
+    let mut back = None;
+    if let Some((making, job)) = state.making.as_ref().filter(|(c, _)| *c == *choice) {
+        ui.horizontal(|ui| {
+            ui.add(egui::Spinner::new().size(12.0));
+            ui.label(RichText::new(format!("compiling {} s", job.seconds() as u32)).small());
+            let before = state.made.as_ref().map(|m| m.0.clone()).filter(|m| m != making);
+            if before.is_some() && job.seconds() > 1.0 && ui.small_button("Cancel").clicked() {
+                back = before;
+            }
+        });
+    }
+    if let Some(before) = back {
+        *choice = before;
+        state.making = None;
+    }
+    if let Some((_, error)) = state.failed.as_ref().filter(|f| f.0 == *choice) {
+        ui.label(RichText::new(error).color(style::BAD));
+    }
+}
+
+fn truth(ui: &mut egui::Ui, session: &Session) {
+    ui.label(RichText::new("Ray-traced truth").strong().size(15.0).color(style::ON_PICTURE));
+    let text = match &session.truth {
+        None => "waits until everything rests".to_owned(),
+        Some(truth) if truth.is_preparing() => "sorting triangles for rays …".to_owned(),
+        Some(truth) => truth.picture.lock().map_or_else(
+            |_| String::new(),
+            |p| match p.done() {
+                done if done < 1.0 => format!("{:>3.0} %   {} rays a pixel", 100.0 * done, p.rays()),
+                _ => "1024 rays a pixel".to_owned(),
+            },
+        ),
+    };
+    ui.label(RichText::new(text).small().color(Color32::from_gray(190)));
+}
+
+fn color_bar(ui: &egui::Ui, area: Rect) {
+    let painter = ui.painter_at(area);
+    let size = vec2(220.0f32.min(area.width() * 0.5), 12.0);
+    let bar = Rect::from_center_size(pos2(area.center().x, area.bottom() - 38.0), size);
+    painter.rect_filled(
+        bar.expand2(vec2(34.0, 7.0)).translate(vec2(0.0, 8.0)).expand2(vec2(0.0, 9.0)),
+        5.0,
+        style::SHADE,
+    );
+    let steps = 64;
+    for i in 0..steps {
+        let part = |k: i32| bar.left() + bar.width() * k as f32 / steps as f32;
+        let strip = Rect::from_x_y_ranges(part(i)..=part(i + 1) + 0.5, bar.y_range());
+        let [r, g, b] = heat_color((f64::from(i) + 0.5 - f64::from(steps) / 2.0) / f64::from(steps) * 2.0 * HEAT_SCALE);
+        painter.rect_filled(strip, 0.0, Color32::from_rgb(r, g, b));
+    }
+    let font = FontId::proportional(11.0);
+    let y = bar.bottom() + 4.0;
+    let ends = [(0.0, format!("{:+.2}", -HEAT_SCALE)), (0.5, "0".to_owned()), (1.0, format!("{HEAT_SCALE:+.2}"))];
+    for (part, text) in ends {
+        painter.text(
+            pos2(bar.left() + bar.width() * part, y),
+            Align2::CENTER_TOP,
+            text,
+            font.clone(),
+            style::ON_PICTURE,
+        );
+    }
+    for (part, text) in [(0.25, "too dark"), (0.75, "too light")] {
+        painter.text(
+            pos2(bar.left() + bar.width() * part, y),
+            Align2::CENTER_TOP,
+            text,
+            font.clone(),
+            Color32::from_gray(180),
+        );
+    }
+}

@@ -1,0 +1,149 @@
+//! The side panel: techniques with their settings, the light, the picture.
+
+use super::{Wishes, controls, numbers, sky, style};
+use crate::choice::Choice;
+use crate::desk::{Compare, Desk, Inside};
+use crate::session::Session;
+use antumbra::techniques::TECHNIQUES;
+use eframe::egui::{self, RichText};
+
+/// The panel.
+pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, wishes: &mut Wishes) {
+    egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
+        ui.add_space(4.0);
+        for half in 0..desk.techniques() {
+            let title = match (desk.compare, half) {
+                (Compare::One, _) => "Technique",
+                (_, 0) => "Left",
+                _ => "Right",
+            };
+            section(ui, title, |ui| technique(ui, desk, session, half, wishes));
+        }
+        if desk.compare == Compare::Truth {
+            section(ui, "Right", |ui| truth(ui, session));
+        }
+        section(ui, "Light", |ui| sky::show(ui, desk, session));
+        section(ui, "Drawing", |ui| drawing(ui, desk, session));
+    });
+}
+
+fn section(ui: &mut egui::Ui, title: &str, content: impl FnOnce(&mut egui::Ui)) {
+    egui::CollapsingHeader::new(RichText::new(title).strong()).default_open(true).show_unindented(ui, content);
+    ui.add_space(4.0);
+}
+
+fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: usize, wishes: &mut Wishes) {
+    let choice = &mut desk.choices[half];
+    let title = |t: &antumbra::TechniqueInfo| format!("{}  ·  {}", t.name, t.title);
+    egui::ComboBox::from_id_salt(("technique", half))
+        .width(ui.available_width() - 8.0)
+        .height(480.0)
+        .truncate()
+        .selected_text(title(choice.technique))
+        .show_ui(ui, |ui| pick(ui, choice));
+    ui.add(
+        egui::Label::new(
+            RichText::new(format!("{}: {}", choice.technique.source, choice.technique.summary)).weak().small(),
+        )
+        .wrap(),
+    );
+    let state = &mut session.halves[half];
+    if let Some((_, error)) = state.failed.as_ref().filter(|f| f.0 == *choice) {
+        ui.colored_label(style::BAD, error);
+    }
+    controls::show(ui, choice, half);
+    ui.horizontal(|ui| {
+        let fresh = Choice::new(choice.technique);
+        if ui
+            .add_enabled(*choice != fresh, egui::Button::new("Reset"))
+            .on_hover_text("All settings as they come")
+            .clicked()
+        {
+            *choice = fresh;
+        }
+        if ui.button("Copy SPEC").on_hover_text(choice.text()).clicked() {
+            wishes.save = Some(super::Save::Spec(half));
+        }
+        let can_look = state.made.as_ref().is_some_and(|m| !m.1.inner_pictures().is_empty());
+        ui.add_enabled_ui(can_look, |ui| {
+            if ui.button("Look inside").on_hover_text("Its maps and lists as pictures").clicked() {
+                desk.inside = Some(Inside { half, ..Inside::default() });
+            }
+        });
+    });
+    numbers::show(ui, session, half);
+}
+
+/// The list of techniques.
+pub fn pick(ui: &mut egui::Ui, choice: &mut Choice) {
+    for technique in TECHNIQUES {
+        let is_chosen = technique.name == choice.technique.name;
+        let text = format!("{}  ·  {}", technique.name, technique.title);
+        let item = ui.selectable_label(is_chosen, text).on_hover_ui(|ui| {
+            ui.set_max_width(300.0);
+            ui.strong(technique.source);
+            ui.label(technique.summary);
+        });
+        if item.clicked() && !is_chosen {
+            *choice = Choice::new(technique);
+        }
+    }
+}
+
+fn truth(ui: &mut egui::Ui, session: &Session) {
+    ui.label("Ray-traced truth").on_hover_text("What `antumbra reference` traces: 1024 shadow rays a pixel in the end");
+    let Some(truth) = &session.truth else {
+        ui.weak("traced once camera, light and occluders rest");
+        return;
+    };
+    if truth.is_preparing() {
+        ui.weak("sorting triangles for rays …");
+        return;
+    }
+    if let Ok(picture) = truth.picture.lock() {
+        let done = picture.done();
+        let text = if done < 1.0 {
+            format!("{} rays a pixel, {:.0} %", picture.rays(), 100.0 * done)
+        } else {
+            "1024 rays a pixel, done".to_owned()
+        };
+        ui.add(egui::ProgressBar::new(done).text(RichText::new(text).small()).desired_height(14.0));
+    }
+}
+
+fn drawing(ui: &mut egui::Ui, desk: &mut Desk, session: &Session) {
+    egui::Grid::new("drawing").num_columns(2).spacing([10.0, 6.0]).show(ui, |ui| {
+        ui.label("resolution").on_hover_text("Pixels of the picture for one of the screen, along each side");
+        let text = |r: Option<f32>| match r {
+            None => format!("auto ({:.0} %)", 100.0 * automatic(session)),
+            Some(r) => format!("{:.0} %", 100.0 * r),
+        };
+        egui::ComboBox::from_id_salt("resolution").selected_text(text(desk.resolution)).show_ui(ui, |ui| {
+            for r in [None, Some(1.0), Some(0.75), Some(0.5), Some(1.0 / 3.0), Some(0.25)] {
+                ui.selectable_value(&mut desk.resolution, r, text(r));
+            }
+        });
+        ui.end_row();
+        ui.label("frames").on_hover_text("Drawn only when something changes, or one after the other");
+        ui.checkbox(&mut desk.keeps_drawing, "keep drawing");
+        ui.end_row();
+        ui.label("graph");
+        ui.checkbox(&mut desk.times, "times of passes");
+        ui.end_row();
+    });
+    let gpu = &session.gpu;
+    let host = session.canvas.as_ref().map_or(0, crate::stage::Canvas::bytes);
+    ui.add(egui::Label::new(RichText::new(&gpu.info.name).small().weak()).truncate()).on_hover_text(format!(
+        "{}\n{:?}, {} {}\ngeometry buffer: {}",
+        gpu.info.name,
+        gpu.info.backend,
+        gpu.info.driver,
+        gpu.info.driver_info,
+        numbers::bytes(host)
+    ));
+}
+
+/// Pixels of the picture for one of the screen where none is chosen.
+pub fn automatic(session: &Session) -> f32 {
+    if session.gpu.is_software() { 0.5 } else { 1.0 }
+}
