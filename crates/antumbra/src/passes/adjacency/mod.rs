@@ -19,6 +19,7 @@ gpu_struct! {
 }
 
 /// For each batch the ring of the half-edges at every edge; see `shaders/edges.wesl`.
+#[derive(Clone)]
 pub struct Adjacency {
     pub(crate) rings: Vec<wgpu::Buffer>,
 }
