@@ -7,6 +7,7 @@ use antumbra::scene::SceneRenderer;
 use antumbra::techniques::TECHNIQUES;
 use antumbra_scene::builtin::{self, BuiltinInfo};
 use common::{drawn, quick, shadowed, technique};
+use serde_json::Value;
 
 const SIZE: [u32; 2] = [97, 64];
 
@@ -92,7 +93,12 @@ fn every_technique_says_what_it_is_and_what_memory_it_takes() {
         for setting in info.settings {
             assert!(!setting.help.is_empty(), "{}: `{}` has no help", info.name, setting.key);
             let default = &(info.defaults)(&Default::default())[setting.key];
-            let word = default.as_str().map_or(default.to_string(), str::to_owned);
+            let word = match default {
+                Value::String(word) => word.clone(),
+                // Points; none by default.
+                Value::Array(points) if points.is_empty() => String::new(),
+                other => other.to_string(),
+            };
             let spec = format!("{}:{}={word}", info.name, setting.key);
             assert!(spec.parse::<antumbra::Spec>().is_ok(), "the default itself must be a value: {spec}");
         }

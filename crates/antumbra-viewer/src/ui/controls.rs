@@ -44,6 +44,7 @@ fn range(setting: &Setting) -> String {
         Kind::Number { min, max } => format!("{}: number, {min} to {max}", setting.key),
         Kind::Toggle => format!("{}: true or false", setting.key),
         Kind::Choice { options } => format!("{}: {}", setting.key, options.join(", ")),
+        Kind::Points { max } => format!("{}: x y;x y;..., from 0 to 1, up to {max} points", setting.key),
     }
 }
 
@@ -65,7 +66,28 @@ fn control(ui: &mut egui::Ui, choice: &Choice, setting: &Setting, id: usize) -> 
             let number = slide(ui, value.as_f64()?, [min.into(), max.into()], false, (setting.key, id))?;
             Some((number as f32).into())
         }
+        Kind::Points { max } => points(ui, &value, max as usize, (setting.key, id)),
     }
+}
+
+/// Points as they are written in a SPEC; what cannot be read is left as it was.
+fn points(ui: &mut egui::Ui, value: &Value, max: usize, id: (&str, usize)) -> Option<Value> {
+    let memory = ui.scope_id().with(("typed", id));
+    let pairs: Vec<[f32; 2]> = serde_json::from_value(value.clone()).unwrap_or_default();
+    let written = pairs.iter().map(|[x, y]| format!("{x} {y}")).collect::<Vec<_>>().join(";");
+    let mut text: String = ui.data_mut(|d| d.remove_temp(memory)).unwrap_or(written);
+    let response = ui.add(egui::TextEdit::singleline(&mut text).hint_text("none").desired_width(140.0));
+    if response.has_focus() {
+        ui.data_mut(|d| d.insert_temp(memory, text));
+        return None;
+    }
+    let number = |word: &str| word.parse::<f32>().ok().filter(|v| (0.0..=1.0).contains(v));
+    let pair = |point: &str| {
+        let numbers: Option<Vec<f32>> = point.split_whitespace().map(number).collect();
+        numbers.and_then(|n| <[f32; 2]>::try_from(n).ok())
+    };
+    let typed: Option<Vec<[f32; 2]>> = text.split(';').filter(|p| !p.trim().is_empty()).map(pair).collect();
+    typed.filter(|typed| *typed != pairs && typed.len() <= max).map(|typed| serde_json::json!(typed))
 }
 
 /// Up to three words in a row, more in a list.

@@ -17,8 +17,8 @@ gpu_struct! {
     }
 }
 
-/// Entries a pixel that there is room for at first.
-const FIRST_ENTRIES: u32 = 4;
+/// Entries that there is room for at first: a pixel, and in all.
+const FIRST_ENTRIES: (u32, u32) = (8, 1 << 20);
 /// Most strips.
 const MOST_STRIPS: u32 = 64;
 /// Bytes of an entry.
@@ -67,7 +67,8 @@ impl Room {
     pub fn plan(&mut self, size: [u32; 2]) -> Plan {
         let pixels = size[0] * size[1];
         if size != self.size {
-            (self.size, self.entries, self.strips) = (size, pixels.saturating_mul(FIRST_ENTRIES).min(self.most()), 1);
+            let first = pixels.saturating_mul(FIRST_ENTRIES.0).max(FIRST_ENTRIES.1);
+            (self.size, self.entries, self.strips) = (size, first.min(self.most()), 1);
         }
         let needed = self.growth.take().and_then(|n| n.into_iter().max());
         if let Some(needed) = needed.filter(|n| *n > self.entries) {
