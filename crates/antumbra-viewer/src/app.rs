@@ -53,12 +53,15 @@ pub struct App {
     lost: Arc<AtomicBool>,
     dropped: Vec<PathBuf>,
     saving: Option<(Saving, Vec<Vec<u8>>)>,
-    screenshot: Option<(Receiver<Arc<egui::ColorImage>>, Option<PathBuf>, Option<Answerer>)>,
+    screenshot: Option<Screenshot>,
     /// Frames that nothing has been under way.
     idle: u32,
 }
 
 type Answerer = Box<dyn FnOnce(Answer) + Send>;
+
+/// A picture of the window that is on its way, where it goes, and who waits for it.
+type Screenshot = (Receiver<Arc<egui::ColorImage>>, Option<PathBuf>, Option<Answerer>);
 
 impl App {
     /// On the device that eframe has opened.

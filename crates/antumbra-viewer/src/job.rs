@@ -37,14 +37,11 @@ impl Status {
 
 impl<T: Send + 'static> Job<T> {
     /// Starts `work`; `wake` is called when there is something to show.
-    pub fn start<F: Future<Output = T>>(
+    pub fn start<F: Future<Output = T> + 'static>(
         title: impl Into<String>,
         wake: impl Fn() + Send + 'static,
         work: impl FnOnce(Status) -> F + Send + 'static,
-    ) -> Job<T>
-    where
-        F: 'static,
-    {
+    ) -> Job<T> {
         let (send, receiver) = channel();
         let status = Status::default();
         let own = status.clone();

@@ -136,7 +136,7 @@ impl Placed {
             let chosen = instances.iter().zip(&self.roles).filter(|(_, role)| only(role));
             chosen.fold(Aabb::EMPTY, |bounds, (i, _)| {
                 let corners = self.boxes[i.mesh].corners().map(|c| i.world_from_object.transform_point3(c));
-                bounds.union(&Aabb::of_points(corners.into_iter()))
+                bounds.union(&Aabb::of_points(corners))
             })
         };
         casters.bounds = around(|_| true);
