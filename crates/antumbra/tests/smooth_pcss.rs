@@ -35,7 +35,7 @@ fn grid() -> Scene {
     }
     let mut scene = scene(
         vec![ground(400.0), grid],
-        camera([0.5, 3.0, 90.0], [1.5, 0.318, 78.0], 24.0),
+        camera([0.5, 3.0, 90.0], [1.5, 0.32, 78.0], 24.0),
         light([5.0, 60.0, 8.0], [5.0, 0.0, 7.9], 0.05),
     );
     scene.camera.far = 1000.0;
