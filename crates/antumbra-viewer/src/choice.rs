@@ -106,8 +106,14 @@ fn word(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
         Value::Number(n) if n.is_f64() => n.as_f64().map_or_else(String::new, |v| (v as f32).to_string()),
+        Value::Array(points) => points.iter().map(point).collect::<Vec<_>>().join(";"),
         other => other.to_string(),
     }
+}
+
+/// A point as it stands in a SPEC.
+fn point(value: &Value) -> String {
+    value.as_array().into_iter().flatten().map(word).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -124,6 +130,7 @@ mod tests {
                     Kind::Number { min, max } => vec![min.into(), (0.5 * (min + max)).into()],
                     Kind::Toggle => vec![true.into(), false.into()],
                     Kind::Choice { options } => options.iter().map(|o| Value::from(*o)).collect(),
+                    Kind::Points { .. } => vec![serde_json::json!([[0.5, 0.5], [0.25, 0.75]])],
                 };
                 values.into_iter().map(move |value| {
                     let mut choice = Choice::new(technique);

@@ -126,13 +126,16 @@ fn invalid_samples_are_those_that_would_darken_a_bumpy_receiver() {
 #[test]
 fn the_map_only_groups_the_work() {
     // In `atrium` a map of 128 is too coarse for the depth test; docs/subpixel.md has the figures.
-    for name in ["fence"] {
+    for (name, most_mean, most_pixels) in [("fence", 1e-3, 0.005), ("atrium", 0.02, 0.025)] {
         let scene = under_point(name);
         let [coarse, fine] = [128, 1024].map(|map| drawn_by(&scene, &format!("subpixel:map={map}")).visibility);
         let off: Vec<f64> = coarse.iter().zip(&fine).map(|(a, b)| f64::from((a - b).abs())).collect();
         let (mean, many) = (off.iter().sum::<f64>() / off.len() as f64, off.iter().filter(|d| **d > 0.1).count());
         println!("{name}: mean {mean:.6}, {many} of {} pixels by over a tenth", off.len());
-        assert!(mean < 1e-3 && many * 200 < off.len(), "{name}: mean {mean}, {many} pixels");
+        assert!(
+            mean < most_mean && (many as f64) < most_pixels * off.len() as f64,
+            "{name}: mean {mean}, {many} pixels"
+        );
     }
 }
 

@@ -56,7 +56,11 @@ fn every_technique_on_every_scene_is_in_range_and_repeatable() {
         let started = std::time::Instant::now();
         for technique in TECHNIQUES {
             let spec = quick(technique);
+            let begun = std::time::Instant::now();
             faults.extend(fault(&renderer, &spec).map(|f| format!("{spec} on {}: {f}", scene.name)));
+            if begun.elapsed().as_secs_f32() > 2.0 {
+                println!("{}: {spec} took {:.1?}", scene.name, begun.elapsed());
+            }
         }
         println!("{}: {} triangles, {:.1?}", scene.name, scene.triangle_count(), started.elapsed());
     }

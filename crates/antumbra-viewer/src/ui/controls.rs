@@ -66,7 +66,7 @@ fn control(ui: &mut egui::Ui, choice: &Choice, setting: &Setting, id: usize) -> 
             let number = slide(ui, value.as_f64()?, [min.into(), max.into()], false, (setting.key, id))?;
             Some((number as f32).into())
         }
-        Kind::Points { max } => points(ui, &value, max as usize, (setting.key, id)),
+        Kind::Points { max } => points(ui, value, max as usize, (setting.key, id)),
     }
 }
 
