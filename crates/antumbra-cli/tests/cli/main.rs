@@ -7,6 +7,7 @@ mod files;
 mod lists;
 mod meshes;
 mod stopping;
+mod study;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
