@@ -234,7 +234,9 @@ mod tests {
         let v = parse_values("t", FIELDS, "map=7, width=0.5,lookup=linear,points=0.5 0.5;\n 1 0.25\n").unwrap();
         let points = serde_json::json!([[0.5, 0.5], [1.0, 0.25]]);
         assert_eq!(Value::Object(v), serde_json::json!({"map": 7, "width": 0.5, "lookup": "linear", "points": points}));
-        for bad in ["points=", "points=0.5", "points=0 0;1 1;0 1", "points=0 2", "points=0 x"] {
+        // No points are the technique's own.
+        assert_eq!(parse_values("t", FIELDS, "points=").unwrap()["points"], serde_json::json!([]));
+        for bad in ["points=0.5", "points=0 0;1 1;0 1", "points=0 2", "points=0 x"] {
             assert!(parse_values("t", FIELDS, bad).is_err(), "{bad} must be refused");
         }
         for bad in ["map=0", "map=101", "map=-1", "map=x", "width=nan", "width=2", "lookup=cubic", "map", "map=1,map=2"]
