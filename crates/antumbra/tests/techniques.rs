@@ -40,9 +40,7 @@ fn fault(renderer: &SceneRenderer, spec: &str) -> Option<String> {
     }
     for (run, other) in ["a second record", "another instance"].iter().zip(&pictures[1..]) {
         let mut differs = (0..other.len()).filter(|&i| other[i].to_bits() != pictures[0][i].to_bits());
-        // Not yet understood: on `pipes` single pixels of this technique differ from run to run (docs/alias-free.md).
-        let tolerated = if spec.starts_with("alias-free-soft") { other.len() / 500 } else { 0 };
-        if let Some(i) = differs.nth(tolerated) {
+        if let Some(i) = differs.next() {
             return Some(format!("{run} gives {} where the first gave {} at {}", other[i], pictures[0][i], place(i)));
         }
     }

@@ -59,8 +59,9 @@ gpu_struct! {
 /// Places of the lattice that pixels take where each has its own.
 const PLACEMENTS: u32 = 16;
 
-/// Triangles that are held in light space at once: 48 MiB of them.
-const MOST_TRIANGLES: u32 = 1 << 20;
+/// Triangles that are looked at in one go. A tile may meet them all, and no thread may go round longer than a driver
+/// bears: a GPU that hangs is reset after seconds, and llvmpipe ends a thread's loops after 65 535 rounds, wherever they are.
+const MOST_TRIANGLES: u32 = 1 << 15;
 
 /// The narrowest light that has points, as a part of the distance to the nearest surface: a penumbra far below a pixel.
 const LEAST_LIGHT: f32 = 1e-4;
