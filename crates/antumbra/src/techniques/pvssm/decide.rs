@@ -2,7 +2,7 @@
 //! what the shaders `kd_tree.wesl` and `decide.wesl` are held against.
 
 use super::PvssmSettings;
-use super::plan::{Decided, MOST_OF_ROUND, MOST_TILES, Tile};
+use super::plan::{Decided, LARGEST_NODE, MOST_OF_ROUND, MOST_TILES, Tile};
 use glam::{UVec2, UVec4, Vec2};
 
 /// The resolution that each cell needs: texels over the whole window along x and y; 0 where nothing is asked for.
@@ -81,12 +81,10 @@ impl Node {
     }
 }
 
-const FEWEST_TEXELS: u32 = 8;
-
-/// Rounded up to four steps an octave.
+/// Rounded up to four steps an octave, and to whole nodes of the pyramid.
 fn in_steps(texels: f32) -> u32 {
-    let t = (texels.min(1.0e6).ceil() as u32).max(FEWEST_TEXELS);
-    t.next_multiple_of(1 << (t.ilog2() - 2))
+    let t = (texels.min(1.0e6).ceil() as u32).max(LARGEST_NODE);
+    t.next_multiple_of((1 << (t.ilog2() - 2)).max(LARGEST_NODE))
 }
 
 /// See `kd_tree.wesl`.
@@ -126,7 +124,7 @@ fn leaves(grid: &Grid, coarser: f32, settings: &PvssmSettings) -> Vec<(Node, UVe
         }
         match split_axis(grid, node, texels, coarser, settings) {
             Some(axis) => open.extend([node.half(axis, 0), node.half(axis, 1)]),
-            None => found.push((node, texels.min(UVec2::splat(settings.tile)))),
+            None => found.push((node, texels.min(UVec2::splat(settings.tile / LARGEST_NODE * LARGEST_NODE)))),
         }
     }
     let bits = |v: u32| (0..8).map(|b| ((v >> b) & 1) << (2 * b)).sum::<u32>();

@@ -1,12 +1,13 @@
 //! Drawing tiles into the pool: clusters are culled for all tiles of a round at once, and drawn once for each tile that
 //! they touch [Shen 2011, section 5.2, step 7].
 
-use super::plan::{MOST_OF_ROUND, MOST_ROUNDS, Plan, Tile};
+use super::plan::{LARGEST_NODE, MOST_OF_ROUND, MOST_ROUNDS, Plan, Tile};
 use super::{PvssmSettings, PvssmUniform};
 use crate::casters::{BatchLayout, CLUSTER_TRIANGLES, Casters};
 use crate::passes::culling::MapView;
 use crate::pipeline::RenderTarget;
-use crate::recorder::Recorder;
+use crate::frame::FrameUniform;
+use crate::recorder::{Recorder, Work};
 use crate::resource::{Texture, UniformArray, buffer_of, storage_buffer, uniform};
 use crate::shader::{HostStruct, ShaderKey};
 use crate::technique::Memory;
@@ -25,13 +26,21 @@ const DRAW_BYTES: u64 = 16;
 /// Clusters that a draw list can tell apart: the rest of its 32 bits says which tile.
 const MOST_CLUSTERS: u32 = 1 << 26;
 
+/// Levels of the pyramid; see `tiles.wesl`.
+const LEVELS: usize = LARGEST_NODE.ilog2() as usize;
+
 const CULLING: &str = "tile culling";
 const TILES: &str = "tiles";
+const PYRAMID: &str = "tile pyramid";
 
 /// The pool and what is drawn into it.
 pub(crate) struct Drawing {
     /// `Depth32Float`, `near / z`.
     pub pool: Texture,
+    /// `Rg32Uint`, the pyramid over it from nodes of 2 x 2 texels on; see `tile_layers.wesl`.
+    pub layers: Texture,
+    /// One view a level.
+    levels: [wgpu::TextureView; LEVELS],
     /// The number of each round.
     pub rounds: UniformArray<RoundUniform>,
     view: wgpu::Buffer,
@@ -72,7 +81,13 @@ impl Drawing {
         let no_draws = buffer_of(gpu, "no draws", bytemuck::cast_slice(&none), wgpu::BufferUsages::COPY_SRC);
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::TEXTURE_BINDING;
         let rounds: Vec<RoundUniform> = (0..MOST_ROUNDS as u32).map(|round| RoundUniform { round }).collect();
+        let of_pyramid = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        let half = [settings.tile.div_ceil(LARGEST_NODE) * LARGEST_NODE / 2; 2];
+        let format = wgpu::TextureFormat::Rg32Uint;
+        let layers = Texture::new(gpu, "pyramid of tiles", half, LEVELS as u32, format, of_pyramid);
         Ok(Drawing {
+            levels: std::array::from_fn(|level| layers.mip(level as u32)),
+            layers,
             pool: Texture::depth(gpu, "pool of tiles", [settings.tile; 2], 1, usage),
             rounds: UniformArray::new(gpu, "rounds", &rounds),
             view: uniform(gpu, "map view", &MapView::new(Mat4::IDENTITY)),
@@ -137,8 +152,28 @@ impl Drawing {
         Ok(())
     }
 
+    /// Makes the pyramid over the tiles of a round.
+    pub fn reduce_tiles(&self, frame: &Frame, recorder: &mut Recorder, plan: &Plan, round: u32) -> Result<(), Error> {
+        let key = ShaderKey::new("techniques::pvssm::reduce_tiles").with::<FrameUniform>();
+        for (step, levels) in self.levels.chunks_exact(2).enumerate() {
+            let key = key.clone().feature("first", step == 0);
+            let pipeline = recorder.gpu.compute_pipeline(&key, "reduce_tiles")?;
+            let mut set = frame.bindings(bindings! { finer_level: &levels[0], coarser_level: &levels[1] });
+            if step == 0 {
+                set.extend_from_slice(bindings! { tile_pool: &self.pool });
+            } else {
+                set.extend_from_slice(bindings! { source_layers: &self.levels[2 * step - 1] });
+            }
+            let arguments = plan.reduce_offset(round, step as u64);
+            recorder.compute(PYRAMID, &pipeline, &set, Work::Indirect(&plan.arguments, arguments));
+        }
+        Ok(())
+    }
+
     /// GPU memory by pass.
-    pub fn memory(&self) -> [Memory; 2] {
-        [Memory::new(CULLING, self.visible.size() + 2 * self.draws.size()), Memory::new(TILES, self.pool.bytes())]
+    pub fn memory(&self) -> [Memory; 3] {
+        let lists = self.visible.size() + 2 * self.draws.size();
+        let bytes = [(CULLING, lists), (TILES, self.pool.bytes()), (PYRAMID, self.layers.bytes())];
+        bytes.map(|(pass, bytes)| Memory::new(pass, bytes))
     }
 }

@@ -102,6 +102,7 @@ impl Filtering {
             tile_round: &number,
             round_blocks: &self.blocks,
             tile_pool: &drawing.pool,
+            tile_layers: &drawing.layers,
             sums: &self.sums,
         });
         recorder.compute(FILTER, &pipeline, &set, Work::Indirect(&self.blocks, 16 * u64::from(round)));

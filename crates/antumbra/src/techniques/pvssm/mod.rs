@@ -49,6 +49,8 @@ gpu_struct! {
         may_keep: u32,
         /// Nodes a side that a blocker search looks at.
         search: f32,
+        /// Nodes of a tile that a kernel takes, as the side of a square.
+        filter_width: f32,
     }
 }
 
@@ -64,6 +66,7 @@ impl PvssmUniform {
             thrifty: u32::from(settings.thrifty),
             may_keep: u32::from(may_keep),
             search: settings.search as f32,
+            filter_width: settings.filter as f32,
         }
     }
 }
@@ -156,6 +159,7 @@ impl Technique for Pvssm {
         filtering.bin_pixels(frame, recorder, analysis, plan)?;
         for round in 0..rounds {
             drawing.draw_tiles(frame, recorder, plan, round)?;
+            drawing.reduce_tiles(frame, recorder, plan, round)?;
             filtering.soften(frame, recorder, analysis, plan, drawing, round)?;
         }
         self.drawn = Some(Drawn::of(frame));

@@ -33,6 +33,10 @@ pub(crate) const MOST_TILES: usize = 256;
 pub(crate) const MOST_ROUNDS: usize = 16;
 /// Tiles of a round, at most; see `decide.wesl`.
 pub(crate) const MOST_OF_ROUND: usize = 64;
+/// Texels a side of the coarsest nodes over the pool; see `tiles.wesl`.
+pub(crate) const LARGEST_NODE: u32 = 16;
+/// Words of a round's arguments before those of its batches.
+const ROUND_WORDS: u64 = 10;
 /// Words before the tiles in the plan, and of a tile.
 const HEADER_WORDS: usize = 8 + 4 * MOST_ROUNDS;
 const TILE_WORDS: usize = 12;
@@ -73,7 +77,8 @@ impl Decided {
             let of_round = || self.tiles.iter().filter(|t| t.round == round);
             let first = self.tiles.iter().position(|t| t.round == round).unwrap_or(self.tiles.len());
             let drawn = of_round().filter(|t| t.fresh != 0).count();
-            words.extend([first as u32, of_round().count() as u32, drawn as u32, 0]);
+            let [x, y] = self.end_of_round(round).to_array();
+            words.extend([first as u32, of_round().count() as u32, drawn as u32, x | y << 16]);
         }
         for t in &self.tiles {
             words.extend(t.cells.to_array());
@@ -107,7 +112,14 @@ impl Decided {
         cells
     }
 
-    /// The words of the indirect arguments of each round: the draw that wipes its tiles, the culling of each batch.
+    /// Where the tiles end that a round draws anew, in the largest nodes from the pool's corner.
+    fn end_of_round(&self, round: u32) -> UVec2 {
+        let drawn = self.tiles.iter().filter(|t| t.round == round && t.fresh != 0);
+        drawn.map(|t| (t.place + t.texels) / LARGEST_NODE).fold(UVec2::ZERO, UVec2::max)
+    }
+
+    /// The words of the indirect arguments of each round: the draw that wipes its tiles, the pyramid over them, the culling
+    /// of each batch.
     fn arguments(&self, rounds: u32, batches: &[u32]) -> Vec<u32> {
         let of_round = |round: u32| {
             let drawn = self.tiles.iter().filter(|t| t.round == round && t.fresh != 0).count() as u32;
@@ -115,7 +127,9 @@ impl Decided {
                 let groups = if drawn > 0 { *groups } else { 0 };
                 [groups.min(1 << 15), groups.div_ceil(1 << 15), 1]
             });
-            [6, drawn, 0, 0].into_iter().chain(cull).collect::<Vec<u32>>()
+            let [x, y] = self.end_of_round(round).to_array();
+            let reduce = [x.div_ceil(2), y.div_ceil(2), 1, x.div_ceil(8), y.div_ceil(8), 1];
+            [6, drawn, 0, 0].into_iter().chain(reduce).chain(cull).collect::<Vec<u32>>()
         };
         (0..rounds).flat_map(of_round).collect()
     }
@@ -163,7 +177,7 @@ impl Plan {
             grid: storage_buffer(gpu, "tile grid", 8 * nodes),
             tiles: storage_buffer(gpu, "tile plan", 4 * (HEADER_WORDS + TILE_WORDS * MOST_TILES) as u64),
             cells: storage_buffer(gpu, "tile of each cell", 4 * u64::from(side * side)),
-            arguments: storage_buffer(gpu, "tile arguments", u64::from(rounds) * (16 + 12 * groups.len() as u64)),
+            arguments: storage_buffer(gpu, "tile arguments", u64::from(rounds) * (4 * ROUND_WORDS + 12 * groups.len() as u64)),
             batch_groups: buffer_of(
                 gpu,
                 "workgroups of batches",
@@ -270,12 +284,17 @@ impl Plan {
 
     /// Where the arguments of the draw that wipes a round's tiles begin, in bytes.
     pub fn wipe_offset(&self, round: u32) -> u64 {
-        u64::from(round) * (16 + 12 * self.batches.len().max(1) as u64)
+        u64::from(round) * (4 * ROUND_WORDS + 12 * self.batches.len().max(1) as u64)
+    }
+
+    /// Where the arguments of two levels of the pyramid over a round's tiles begin, in bytes.
+    pub fn reduce_offset(&self, round: u32, step: u64) -> u64 {
+        self.wipe_offset(round) + 16 + 12 * step
     }
 
     /// Where the arguments of the culling of a batch in a round begin, in bytes.
     pub fn cull_offset(&self, round: u32, batch: usize) -> u64 {
-        self.wipe_offset(round) + 16 + 12 * batch as u64
+        self.wipe_offset(round) + 4 * ROUND_WORDS + 12 * batch as u64
     }
 
     /// GPU memory.

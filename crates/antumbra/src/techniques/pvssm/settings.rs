@@ -56,6 +56,8 @@ crate::settings! {
         detail: f32 = 1.5, Kind::Number { min: 0.1, max: 16.0 };
         /// Widest blocker search, in nodes of the depth pyramid a side.
         search: u32 = 16, Kind::Integer { min: 2, max: 256 };
+        /// Most nodes of a tile that a kernel is filtered with, as the side of a square; wider ones read a coarser level.
+        filter: u32 = 16, Kind::Integer { min: 2, max: 256 };
         /// Whether a tile is split where its halves need far fewer texels together, not only where it is too large.
         thrifty: bool = true, Kind::Toggle;
         /// Whether the GPU decides which tiles are drawn, or the CPU waits for the grid and does.
