@@ -52,8 +52,8 @@ crate::settings! {
         c2: f32 = rho::DYNAMIC[2], Kind::Number { min: -64.0, max: 64.0 };
         /// Where `rho=own`: coefficient of its cube.
         c3: f32 = rho::DYNAMIC[3], Kind::Number { min: -64.0, max: 64.0 };
-        /// Times as many texels as predicted, along each axis: quality against speed. 1 is what people could not tell from more.
-        detail: f32 = 1.5, Kind::Number { min: 0.1, max: 16.0 };
+        /// Times as many texels as predicted, along each axis.
+        detail: f32 = 1.0, Kind::Number { min: 0.1, max: 16.0 };
         /// Widest blocker search, in nodes of the depth pyramid a side.
         search: u32 = 16, Kind::Integer { min: 2, max: 256 };
         /// Most nodes of a tile that a kernel is filtered with, as the side of a square; wider ones read a coarser level.

@@ -36,6 +36,7 @@ fn with_constant_resolution(renderer: &SceneRenderer, tile: u32) -> (Vec<f32>, [
         filtering.bin_pixels(frame, recorder, analysis, plan)?;
         for round in 0..settings.rounds {
             drawing.draw_tiles(frame, recorder, plan, round)?;
+            drawing.reduce_tiles(frame, recorder, plan, round)?;
             filtering.soften(frame, recorder, analysis, plan, drawing, round)?;
         }
         Ok(())
