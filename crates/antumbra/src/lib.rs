@@ -50,6 +50,8 @@ pub mod settings;
 pub mod shader;
 pub mod technique;
 pub mod techniques;
+#[cfg(test)]
+mod testing;
 
 pub use antumbra_scene::{Aabb, Camera, RectLight};
 pub use casters::Casters;

@@ -107,7 +107,7 @@ fn no_discretisation_shows_from_a_hand_s_breadth_to_a_hundred_metres() {
 
 #[test]
 fn memory_of_maps_is_within_the_budget_whatever_is_drawn() {
-    let maps = ["low-resolution map", "depth pyramid", "tile grid", "tile decision", "tiles"];
+    let maps = ["low-resolution map", "depth pyramid", "tile grid", "tile decision", "tiles", "tile pyramid"];
     for spec in ["pvssm", "pvssm:detail=8", "fvsm"] {
         let mut one = technique(spec);
         shadowed(&drawn(&builtin("plant"), SIZE), &mut *one).unwrap_or_else(|e| panic!("{e}"));

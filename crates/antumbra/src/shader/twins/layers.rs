@@ -118,3 +118,32 @@ proptest! {
         prop_assert!(off < 1e-12, "{merged:?}");
     }
 }
+
+#[test]
+fn a_node_of_two_words_keeps_its_layers() {
+    let text = "
+        import package::shaders::layers::Layers;
+        import package::techniques::pvssm::tile_layers::{pack_node, unpack_node};
+        fn evaluate(at: u32, to: u32) {
+            let kept = unpack_node(pack_node(Layers(input[at], input[at + 1u], input[at + 2u])));
+            output[to] = kept.near;
+            output[to + 1u] = kept.far;
+            output[to + 2u] = kept.share;
+        }";
+    let mut random = Random(12);
+    let mut input = vec![0.0, 0.0, 1.0, 1.0, 1.0, 1.0, 3.0e38, 1.0e-30, 0.0];
+    for _ in 0..4096 {
+        input.extend([random.decades(-6.0, 6.0), random.decades(-6.0, 6.0), random.unit()]);
+    }
+    let (mut distance, mut share) = (Worst::default(), Worst::default());
+    for (exact, kept) in input.chunks_exact(3).zip(evaluate(text, &input, 3, 3)) {
+        for (a, b) in exact[..2].iter().zip(&kept) {
+            distance.see(f64::from((a - b).abs()) / f64::from(*a).max(1e-30), || format!("{exact:?} kept as {kept:?}"));
+        }
+        share.see(f64::from((exact[2] - kept[2]).abs()), || format!("{exact:?} kept as {kept:?}"));
+    }
+    // 18 bits of mantissa, 12 of the share.
+    assert!(distance.error <= 0.5f64.powi(18), "{distance:?}");
+    assert!(share.error <= 0.500_01 / 4095.0, "{share:?}");
+    assert_eq!(evaluate(text, &[0.25, 0.25, 1.0], 3, 3), [[0.25, 0.25, 1.0]], "a node of one layer is that exactly");
+}

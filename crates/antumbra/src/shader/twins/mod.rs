@@ -16,22 +16,8 @@ mod ray_to_center;
 mod smooth_kernel;
 mod summed_area;
 
-use crate::recorder::Work;
-use crate::resource::{buffer_of, read_buffer, storage_buffer};
 use crate::shader::ShaderKey;
-use crate::{AdapterChoice, Gpu, Recorder, bindings};
-use pollster::block_on;
-use std::sync::OnceLock;
-
-/// The device that all tests share. A machine without an adapter fails the test.
-fn gpu() -> &'static Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| {
-        block_on(Gpu::new(&AdapterChoice::Best)).unwrap_or_else(|e| {
-            panic!("{e}\nThis test needs a GPU or a software one: `cargo xtask test` installs one.")
-        })
-    })
-}
+use crate::testing::{Random, computed, gpu};
 
 /// Runs `fn evaluate(at: u32, to: u32)` of a WESL text for every input of `stride` numbers: it reads `input[at]` and on,
 /// writes `output[to]` and on.
@@ -56,45 +42,9 @@ fn evaluate_variant(
             if id.x < {count}u {{ evaluate(id.x * {stride}u, id.x * {outputs}u); }}
         }}"
     );
-    let gpu = gpu();
     let key = ShaderKey { structs: kernel, features: features.to_vec(), ..ShaderKey::new("host") };
-    let pipeline = gpu.compute_pipeline(&key, "each").unwrap_or_else(|e| panic!("{e}"));
-    let source = buffer_of(gpu, "input", bytemuck::cast_slice(input), wgpu::BufferUsages::STORAGE);
-    let target = storage_buffer(gpu, "output", (count * outputs * 4) as u64);
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let set = bindings! { input: &source, output: &target };
-    Recorder::new(gpu, &mut encoder).compute("twin", &pipeline, set, Work::Threads([count as u32, 1, 1]));
-    gpu.queue.submit([encoder.finish()]);
-    let words: Vec<f32> = bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, &target)).expect("reads"));
+    let words: Vec<f32> = computed(&key, input, &[], count as u32, (count * outputs * 4) as u64);
     words.chunks_exact(outputs).take(count).map(<[f32]>::to_vec).collect()
-}
-
-/// Reproducible numbers in [0, 1).
-struct Random(u64);
-
-impl Random {
-    fn unit(&mut self) -> f32 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        let x = (self.0 ^ (self.0 >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        (x >> 40) as f32 / (1u64 << 24) as f32
-    }
-
-    /// In [low, high).
-    fn within(&mut self, low: f32, high: f32) -> f32 {
-        low + (high - low) * self.unit()
-    }
-
-    /// From 10^low to 10^high, every decade as often as any other.
-    fn decades(&mut self, low: f32, high: f32) -> f32 {
-        10f32.powf(self.within(low, high))
-    }
-
-    /// Uniform over all directions.
-    fn direction(&mut self) -> glam::Vec3 {
-        let (z, turn) = (self.within(-1.0, 1.0), self.within(0.0, std::f32::consts::TAU));
-        let r = (1.0 - z * z).sqrt();
-        glam::Vec3::new(r * turn.cos(), r * turn.sin(), z)
-    }
 }
 
 /// The largest error and what made it, for a message.

@@ -5,21 +5,13 @@ mod refinement;
 mod twin;
 
 use super::*;
-use crate::AdapterChoice;
 use crate::techniques::uniform_sampling::Weights;
+use crate::testing::gpu;
 use glam::Vec2;
-use pollster::block_on;
 use proptest::prelude::*;
 use refinement::{KEPT, Refinement, slots_of};
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::OnceLock;
 use twin::{Cell, Tree};
-
-/// A machine without an adapter fails the test.
-fn gpu() -> &'static Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| block_on(Gpu::new(&AdapterChoice::Best)).unwrap_or_else(|e| panic!("{e}")))
-}
 
 /// A light, its settings, and how much the corners of its cells disagree.
 #[derive(Clone, Debug)]

@@ -4,9 +4,9 @@
 use super::plan::{LARGEST_NODE, MOST_OF_ROUND, MOST_ROUNDS, Plan, Tile};
 use super::{PvssmSettings, PvssmUniform};
 use crate::casters::{BatchLayout, CLUSTER_TRIANGLES, Casters};
+use crate::frame::FrameUniform;
 use crate::passes::culling::MapView;
 use crate::pipeline::RenderTarget;
-use crate::frame::FrameUniform;
 use crate::recorder::{Recorder, Work};
 use crate::resource::{Texture, UniformArray, buffer_of, storage_buffer, uniform};
 use crate::shader::{HostStruct, ShaderKey};

@@ -177,7 +177,11 @@ impl Plan {
             grid: storage_buffer(gpu, "tile grid", 8 * nodes),
             tiles: storage_buffer(gpu, "tile plan", 4 * (HEADER_WORDS + TILE_WORDS * MOST_TILES) as u64),
             cells: storage_buffer(gpu, "tile of each cell", 4 * u64::from(side * side)),
-            arguments: storage_buffer(gpu, "tile arguments", u64::from(rounds) * (4 * ROUND_WORDS + 12 * groups.len() as u64)),
+            arguments: storage_buffer(
+                gpu,
+                "tile arguments",
+                u64::from(rounds) * (4 * ROUND_WORDS + 12 * groups.len() as u64),
+            ),
             batch_groups: buffer_of(
                 gpu,
                 "workgroups of batches",

@@ -4,14 +4,12 @@
 use super::super::plan::Tile;
 use super::super::rho::{self, DYNAMIC, STATIC};
 use super::super::{PvssmSettings, PvssmUniform, Rho};
-use super::{Random, gpu, submit};
+use super::{Random, computed, gpu};
 use crate::bindings;
 use crate::frame::FrameUniform;
-use crate::recorder::Work;
-use crate::resource::{buffer_of, read_buffer, storage_buffer, uniform};
+use crate::resource::uniform;
 use crate::shader::{HostStruct, ShaderKey};
 use glam::{DMat2, DVec2};
-use pollster::block_on;
 
 const KERNEL: &str = "
     import package::shaders::smooth_kernel::{spread, kernel_of};
@@ -33,16 +31,9 @@ const KERNEL: &str = "
 fn on_the_gpu(settings: &PvssmSettings, cases: &[[f32; 8]]) -> Vec<[f32; 4]> {
     let structs = format!("{KERNEL}\n{}{}{}", PvssmUniform::wgsl(), Tile::wgsl(), FrameUniform::wgsl());
     let key = ShaderKey { structs, ..ShaderKey::new("host") };
-    let pipeline = gpu().compute_pipeline(&key, "each").unwrap_or_else(|e| panic!("{e}"));
-    let input = buffer_of(gpu(), "input", bytemuck::cast_slice(cases), wgpu::BufferUsages::STORAGE);
-    let output = storage_buffer(gpu(), "output", 16 * cases.len() as u64);
     let pvssm = uniform(gpu(), "pvssm", &PvssmUniform::new(settings, false));
-    let set = bindings! { input: &input, output: &output, pvssm: &pvssm };
-    submit(|recorder| {
-        recorder.compute("twin", &pipeline, set, Work::Threads([cases.len() as u32, 1, 1]));
-        Ok(())
-    });
-    bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu(), &output)).expect("reads"))
+    let set = bindings! { pvssm: &pvssm };
+    computed(&key, cases.as_flattened(), set, cases.len() as u32, 16 * cases.len() as u64)
 }
 
 #[test]
