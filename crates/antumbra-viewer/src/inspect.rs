@@ -19,10 +19,25 @@ pub struct Part {
     pub channel: u32,
 }
 
-/// What parts a texture has: layers, levels, channels.
-pub fn parts(texture: &wgpu::Texture) -> [u32; 3] {
-    let channels = u32::from(texture.format().components());
-    [texture.depth_or_array_layers(), texture.mip_level_count(), channels]
+/// What parts a picture has: layers, levels, channels.
+pub fn parts(content: &InnerContent) -> [u32; 3] {
+    match content {
+        InnerContent::Texture(texture) => {
+            let channels = u32::from(texture.format().components());
+            [texture.depth_or_array_layers(), texture.mip_level_count(), channels]
+        }
+        InnerContent::Numbers { channels, .. } => [1, 1, *channels],
+        InnerContent::LightPoints(_) | InnerContent::Pixels { .. } => [1; 3],
+    }
+}
+
+/// Its texels or places along x and y.
+pub fn size(content: &InnerContent) -> [u32; 2] {
+    match content {
+        InnerContent::Texture(texture) => [texture.width(), texture.height()],
+        InnerContent::Numbers { size, .. } | InnerContent::Pixels { size, .. } => *size,
+        InnerContent::LightPoints(_) => [1; 2],
+    }
 }
 
 /// True if it can be shown: depth or float texels, one sample each.
@@ -43,6 +58,11 @@ pub struct Inspector {
     show_values: wgpu::ComputePipeline,
     clear: wgpu::ComputePipeline,
     show_list: wgpu::ComputePipeline,
+    forget: wgpu::ComputePipeline,
+    gather_rows: wgpu::ComputePipeline,
+    gather_listed: wgpu::ComputePipeline,
+    /// `R32Float`, numbers of a buffer where they belong.
+    gathered: Option<Texture>,
     look: wgpu::Buffer,
     measured: wgpu::Buffer,
     readback: Option<Readback>,
@@ -75,6 +95,10 @@ impl Inspector {
             show_values: pipeline("show_values", Some(&layout)),
             clear: pipeline("clear", None),
             show_list: pipeline("show_list", None),
+            forget: pipeline("forget", None),
+            gather_rows: pipeline("gather_rows", None),
+            gather_listed: pipeline("gather_listed", None),
+            gathered: None,
             look: buffer("look", 32, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
             measured: buffer("range", 8, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
             readback: None,
@@ -86,6 +110,7 @@ impl Inspector {
         match &picture.content {
             InnerContent::Texture(texture) => self.draw_texture(gpu, texture, part),
             InnerContent::Pixels { list, size } => self.draw_list(gpu, list, *size),
+            InnerContent::Numbers { .. } => self.draw_numbers(gpu, &picture.content, part),
             InnerContent::LightPoints(_) => self.range = None,
         }
     }
@@ -96,6 +121,27 @@ impl Inspector {
             let range = <[f32; 2]>::try_from(values).ok();
             (self.range, self.readback) = (range.filter(|[low, high]| low <= high), None);
         }
+    }
+
+    fn draw_numbers(&mut self, gpu: &Gpu, content: &InnerContent, part: Part) {
+        let InnerContent::Numbers { numbers, stride, size, list, .. } = content else { return };
+        let of_size = |t: &Texture| [t.texture.width(), t.texture.height()] == *size;
+        if !self.gathered.as_ref().is_some_and(of_size) {
+            let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+            let format = wgpu::TextureFormat::R32Float;
+            self.gathered = Some(Texture::new(gpu, "gathered numbers", *size, 1, format, usage));
+        }
+        let gathered = self.gathered.as_ref().expect("just made");
+        let look = [part.layer, part.level, part.channel, size[0], size[1], *stride];
+        gpu.queue.write_buffer(&self.look, 0, bytemuck::cast_slice(&look));
+        let into = || entry(6, wgpu::BindingResource::TextureView(&gathered.view));
+        let mut from = vec![entry(0, self.look.as_entire_binding()), entry(5, numbers.as_entire_binding()), into()];
+        from.extend(list.as_ref().map(|list| entry(4, list.as_entire_binding())));
+        let gather = if list.is_some() { &self.gather_listed } else { &self.gather_rows };
+        let empty = [size[0].div_ceil(8), size[1].div_ceil(8)];
+        self.run(gpu, &[(&self.forget, empty), (gather, threads(*size))], &[&[into()], &from]);
+        let texture = gathered.texture.clone();
+        self.draw_texture(gpu, &texture, Part::default());
     }
 
     fn draw_texture(&mut self, gpu: &Gpu, texture: &wgpu::Texture, part: Part) {
@@ -119,9 +165,7 @@ impl Inspector {
         self.range = None;
         let shown = || wgpu::BindingResource::TextureView(&self.shown.view);
         let listed = [entry(0, self.look.as_entire_binding()), entry(3, shown()), entry(4, list.as_entire_binding())];
-        let groups = (size[0] * size[1]).div_ceil(64);
-        let rows = groups.div_ceil(4096);
-        let steps = [(&self.clear, [SIDE / 8; 2]), (&self.show_list, [groups.div_ceil(rows), rows])];
+        let steps = [(&self.clear, [SIDE / 8; 2]), (&self.show_list, threads(size))];
         self.run(gpu, &steps, &[&[entry(3, shown())], &listed]);
     }
 
@@ -138,6 +182,13 @@ impl Inspector {
         }
         gpu.queue.submit([encoder.finish()]);
     }
+}
+
+/// Workgroups of 64 threads, one thread a place.
+fn threads(size: [u32; 2]) -> [u32; 2] {
+    let groups = (size[0] * size[1]).div_ceil(64).max(1);
+    let rows = groups.div_ceil(4096);
+    [groups.div_ceil(rows), rows]
 }
 
 fn entry(binding: u32, resource: wgpu::BindingResource) -> wgpu::BindGroupEntry {

@@ -1,12 +1,15 @@
 // Looking into a technique: a layer of a texture as grey between its smallest and largest value, or a list of pixels.
+// Numbers of a buffer are gathered into a texture first.
 
 struct Look {
     layer: u32,
     level: u32,
     channel: u32,
-    // Of the list's picture.
+    // Of the list's picture, or places of the numbers.
     width: u32,
     height: u32,
+    // Numbers of a place.
+    stride: u32,
 }
 
 struct Range {
@@ -19,6 +22,8 @@ struct Range {
 @group(0) @binding(2) var values: texture_2d_array<f32>;
 @group(0) @binding(3) var shown: texture_storage_2d<rgba8unorm, write>;
 @group(0) @binding(4) var<storage, read> list: array<u32>;
+@group(0) @binding(5) var<storage, read> numbers: array<f32>;
+@group(0) @binding(6) var gathered: texture_storage_2d<r32float, write>;
 
 // Samples a side that the range is measured on.
 const SAMPLES: u32 = 128u;
@@ -78,13 +83,38 @@ fn clear(@builtin(global_invocation_id) pixel: vec3<u32>) {
     textureStore(shown, pixel.xy, vec4(0.13, 0.16, 0.28, 1.0));
 }
 
+fn listed_pixel(k: u32) -> vec2<u32> {
+    let entry = list[4u + 2u * k];
+    return vec2(entry & 0xffffu, entry >> 16u);
+}
+
 @compute @workgroup_size(64)
 fn show_list(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let k = id.x + id.y * groups.x * 64u;
     if k >= list[3] {
         return;
     }
-    let entry = list[4u + 2u * k];
-    let at = vec2(entry & 0xffffu, entry >> 16u);
+    let at = listed_pixel(k);
     textureStore(shown, at * textureDimensions(shown) / vec2(look.width, look.height), vec4(1.0, 0.78, 0.3, 1.0));
+}
+
+@compute @workgroup_size(8, 8)
+fn forget(@builtin(global_invocation_id) at: vec3<u32>) {
+    textureStore(gathered, at.xy, vec4(0.0));
+}
+
+@compute @workgroup_size(64)
+fn gather_rows(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = id.x + id.y * groups.x * 64u;
+    if k < look.width * look.height {
+        textureStore(gathered, vec2(k % look.width, k / look.width), vec4(numbers[k * look.stride + look.channel]));
+    }
+}
+
+@compute @workgroup_size(64)
+fn gather_listed(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let k = id.x + id.y * groups.x * 64u;
+    if k < list[3] {
+        textureStore(gathered, listed_pixel(k), vec4(numbers[k * look.stride + look.channel]));
+    }
 }

@@ -70,6 +70,19 @@ pub enum InnerContent {
         /// Size of the picture, pixels.
         size: [u32; 2],
     },
+    /// Numbers in a buffer: those of a place one after the other.
+    Numbers {
+        /// Of all places; 32-bit floats; needs `STORAGE`.
+        numbers: wgpu::Buffer,
+        /// Numbers of a place.
+        stride: u32,
+        /// How many of these mean something, from the first on.
+        channels: u32,
+        /// Places along x and y.
+        size: [u32; 2],
+        /// Which places there are, in this order, as in `shaders/penumbra_list.wesl`; needs `STORAGE`. None: all, row by row.
+        list: Option<wgpu::Buffer>,
+    },
 }
 
 impl InnerPicture {

@@ -54,8 +54,8 @@ fn window(
         }
     });
     ui.label(RichText::new(picture.help).small().weak());
-    if let InnerContent::Texture(texture) = &picture.content {
-        part(ui, texture, inside);
+    if inspect::parts(&picture.content) != [1; 3] {
+        part(ui, &picture.content, inside);
     }
     session.inspector.poll();
     session.inspector.draw(&session.gpu, picture, inside.part);
@@ -69,7 +69,9 @@ fn window(
                 render.renderer.write().register_native_texture(&render.device, view, wgpu::FilterMode::Nearest)
             });
             let rect = match content {
-                InnerContent::Pixels { size, .. } => fitted(rect, size[0] as f32 / size[1].max(1) as f32),
+                InnerContent::Pixels { size, .. } | InnerContent::Numbers { size, .. } => {
+                    fitted(rect, size[0] as f32 / size[1].max(1) as f32)
+                }
                 _ => rect,
             };
             let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
@@ -82,8 +84,8 @@ fn window(
 }
 
 /// Layer, level and channel, where there are several.
-fn part(ui: &mut egui::Ui, texture: &wgpu::Texture, inside: &mut Inside) {
-    let [layers, levels, channels] = inspect::parts(texture);
+fn part(ui: &mut egui::Ui, content: &InnerContent, inside: &mut Inside) {
+    let [layers, levels, channels] = inspect::parts(content);
     let part = &mut inside.part;
     part.layer = part.layer.min(layers - 1);
     part.level = part.level.min(levels - 1);
@@ -104,8 +106,8 @@ fn part(ui: &mut egui::Ui, texture: &wgpu::Texture, inside: &mut Inside) {
                 );
             }
         }
-        let size = texture.size();
-        ui.weak(format!("{} × {}", (size.width >> part.level).max(1), (size.height >> part.level).max(1)));
+        let [width, height] = inspect::size(content).map(|side| (side >> part.level).max(1));
+        ui.weak(format!("{width} × {height}"));
     });
 }
 

@@ -3,7 +3,7 @@
 use super::pvssm::{Pvssm, PvssmSettings, Rho};
 use crate::frame::PointFrame;
 use crate::recorder::Recorder;
-use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
+use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu};
 use serde_json::{Map, Value};
 
@@ -34,6 +34,10 @@ impl Describe for Fvsm {
 impl Technique for Fvsm {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         self.tiles.record(PointFrame::of(&mut self.point, recorder.gpu, frame), recorder)
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        self.tiles.inner_pictures()
     }
 
     fn memory(&self) -> Vec<Memory> {

@@ -12,7 +12,7 @@ use crate::passes::{
 use crate::recorder::{Recorder, Work};
 use crate::resource::storage_buffer;
 use crate::shader::ShaderKey;
-use crate::technique::Memory;
+use crate::technique::{InnerContent, InnerPicture, Memory};
 use crate::{Error, Frame, Gpu, bindings};
 
 /// Label of the low-resolution map's pass.
@@ -82,6 +82,29 @@ impl Analysis {
         });
         recorder.compute(KERNELS, &pipeline, &set, Work::Indirect(&self.list.tiles, 0));
         Ok(())
+    }
+
+    /// For looking at.
+    pub fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let help = "half widths of each pixel's kernel over the map as tangents: along x, its skew along y, along y; \
+                    penumbrae are as wide";
+        let kernels = InnerPicture {
+            name: KERNELS,
+            help,
+            content: InnerContent::Numbers {
+                numbers: self.kernels.clone(),
+                stride: 4,
+                channels: 3,
+                size: self.list.size(),
+                list: Some(self.list.buffer.clone()),
+            },
+        };
+        let bounds_and_layers = self.pyramid.inner_pictures();
+        [InnerPicture { name: MAP, ..self.map.inner_picture() }]
+            .into_iter()
+            .chain(bounds_and_layers)
+            .chain([kernels])
+            .collect()
     }
 
     /// GPU memory by pass.

@@ -10,7 +10,7 @@ use crate::pipeline::RenderTarget;
 use crate::recorder::{Recorder, Work};
 use crate::resource::{Texture, UniformArray, buffer_of, storage_buffer, uniform};
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::Memory;
+use crate::technique::{InnerPicture, Memory};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use glam::Mat4;
 
@@ -168,6 +168,11 @@ impl Drawing {
             recorder.compute(PYRAMID, &pipeline, &set, Work::Indirect(&plan.arguments, arguments));
         }
         Ok(())
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        InnerPicture::of_texture(TILES, "pool of the tiles of the last round, near / z; 0 where nothing is", &self.pool)
     }
 
     /// GPU memory by pass.

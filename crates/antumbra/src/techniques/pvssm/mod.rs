@@ -20,7 +20,7 @@ pub use settings::{Decision, PvssmSettings, Rho};
 use crate::passes::light_maps::Drawn;
 use crate::recorder::Recorder;
 use crate::settings::SpecError;
-use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
+use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, gpu_struct};
 use analysis::Analysis;
 use drawing::Drawing;
@@ -164,6 +164,12 @@ impl Technique for Pvssm {
         }
         self.drawn = Some(Drawn::of(frame));
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let analysis = self.analysis.iter().flat_map(Analysis::inner_pictures);
+        let grid = self.plan.iter().map(Plan::inner_picture);
+        analysis.chain(grid).chain(self.drawing.iter().map(Drawing::inner_picture)).collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

@@ -7,7 +7,7 @@ use crate::frame::FrameUniform;
 use crate::recorder::{Recorder, Work};
 use crate::resource::{buffer_of, read_buffer, storage_buffer, uniform};
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::Memory;
+use crate::technique::{InnerContent, InnerPicture, Memory};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use glam::{UVec2, UVec4};
 
@@ -299,6 +299,21 @@ impl Plan {
     /// Where the arguments of the culling of a batch in a round begin, in bytes.
     pub fn cull_offset(&self, round: u32, batch: usize) -> u64 {
         self.wipe_offset(round) + 4 * ROUND_WORDS + 12 * batch as u64
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        InnerPicture {
+            name: GRID,
+            help: "resolution that each cell of the window needs, as texels over the whole window: along x, along y",
+            content: InnerContent::Numbers {
+                numbers: self.grid.clone(),
+                stride: 2,
+                channels: 2,
+                size: [self.side; 2],
+                list: None,
+            },
+        }
     }
 
     /// GPU memory.

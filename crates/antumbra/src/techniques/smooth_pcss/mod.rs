@@ -4,7 +4,7 @@
 
 use super::pcss::{Pcss, PcssSettings};
 use crate::recorder::Recorder;
-use crate::technique::{About, Describe, Memory, Technique};
+use crate::technique::{About, Describe, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu};
 
 /// [`Pcss`] over the pixel's footprint.
@@ -27,6 +27,10 @@ impl Describe for SmoothPcss {
 impl Technique for SmoothPcss {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         self.0.record(frame, recorder)
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        self.0.inner_pictures()
     }
 
     fn memory(&self) -> Vec<Memory> {
