@@ -1,10 +1,9 @@
 //! `cargo xtask web`: the viewer as a folder for any web server; `cargo xtask test-web`: the same in a browser.
 
-use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::machine::{self, Need};
-use crate::step::{Failure, Line, Step, cargo, output, root, target};
+use crate::step::{Failure, Step, cargo, root, target};
 use crate::toolchain;
 
 /// The profile in the workspace's `Cargo.toml`.
@@ -36,56 +35,36 @@ pub fn test(arguments: &[String]) -> Result<(), Failure> {
 
 fn build(out: &Path) -> Result<(), Failure> {
     let toolchain = toolchain::find()?;
-    let binder = binder()?;
     let line = cargo(["build", "--profile", PROFILE, "--package", "antumbra-viewer", "--bin", PROGRAM])
         .args(["--features", "page"])
         // Every browser that has WebGPU has these.
         .env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS", "-Ctarget-feature=+simd128");
     Step::new("build", toolchain.building(line)).run()?;
     let program = target().join(toolchain::TARGET).join(PROFILE).join(format!("{PROGRAM}.wasm"));
-    let bind = Line::new([binder]).args(["--target", "web", "--no-typescript", "--out-name", "antumbra", "--out-dir"]);
-    Step::new("wasm-bindgen", bind.args([out.as_os_str(), program.as_os_str()])).run()?;
+    let bind = cargo(["run", "--quiet", "--locked", "--manifest-path", "xtask/bind/Cargo.toml", "--"]);
+    let bind = bind.args([program.as_os_str(), "antumbra".as_ref(), out.as_os_str()]);
+    Step::new("bind", bind.env("CARGO_TARGET_DIR", target().join("web-bind"))).run()?;
     let page = root().join("crates/antumbra-viewer/page/index.html");
     std::fs::copy(&page, out.join("index.html"))
         .map_err(|e| Failure::Machine(format!("cannot copy {} to {}: {e}", page.display(), out.display())))?;
     Ok(())
 }
 
-/// The program `wasm-bindgen` of the very version of the library, installed below the target folder if need be.
-fn binder() -> Result<OsString, Failure> {
-    let lock = std::fs::read_to_string(root().join("Cargo.lock"))
-        .map_err(|e| Failure::Machine(format!("cannot read Cargo.lock: {e}")))?;
-    let version = version_of(&lock, "wasm-bindgen")
-        .ok_or_else(|| Failure::Machine("wasm-bindgen is not in Cargo.lock".to_owned()))?;
-    let tools = target().join("web-tools");
-    let own: PathBuf = tools.join("bin").join(format!("wasm-bindgen{}", std::env::consts::EXE_SUFFIX));
-    for known in ["wasm-bindgen".into(), own.clone()] {
-        let said = output(&known.to_string_lossy(), &["--version"]);
-        if said.is_some_and(|said| said.trim() == format!("wasm-bindgen {version}")) {
-            return Ok(known.into());
-        }
-    }
-    let install = cargo(["install", "--locked", "wasm-bindgen-cli", "--bin", "wasm-bindgen", "--version", version])
-        .args(["--root".into(), tools.into_os_string()]);
-    Step::new("wasm-bindgen", install.env("CARGO_TARGET_DIR", target().join("web-tools-build"))).run()?;
-    Ok(own.into())
-}
-
-/// The version of a package in a lock file.
-fn version_of<'a>(lock: &'a str, package: &str) -> Option<&'a str> {
-    let (_, after) = lock.split_once(&format!("name = \"{package}\"\nversion = \""))?;
-    after.split('"').next()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    /// The version of a package in a lock file.
+    fn version_of(lock: &Path, package: &str) -> String {
+        let text = std::fs::read_to_string(root().join(lock)).unwrap();
+        let (_, after) = text.split_once(&format!("name = \"{package}\"\nversion = \"")).expect("it is locked");
+        after.split('"').next().unwrap().to_owned()
+    }
+
     #[test]
-    fn the_version_is_the_librarys() {
-        let lock = "[[package]]\nname = \"wasm-bindgen-futures\"\nversion = \"0.4.1\"\n\n\
-                    [[package]]\nname = \"wasm-bindgen\"\nversion = \"0.2.130\"\nsource = \"x\"\n";
-        assert_eq!(version_of(lock, "wasm-bindgen"), Some("0.2.130"));
-        assert_eq!(version_of(lock, "wgpu"), None);
+    fn the_binder_is_of_the_librarys_version() {
+        let library = version_of(Path::new("Cargo.lock"), "wasm-bindgen");
+        let binder = version_of(Path::new("xtask/bind/Cargo.lock"), "wasm-bindgen-cli-support");
+        assert_eq!(library, binder, "set the version in xtask/bind/Cargo.toml and run `cargo update` there");
     }
 }
