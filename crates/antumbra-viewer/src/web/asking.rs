@@ -51,7 +51,7 @@ pub fn listen(commands: &Arc<Mutex<VecDeque<Asked>>>) -> Result<(), JsValue> {
             wake();
         })
     });
-    Reflect::set(&ours()?, &"ask".into(), ask.as_ref())?;
+    Reflect::set(&ours()?.into(), &"ask".into(), ask.as_ref())?;
     // The page asks as long as it lives.
     ask.forget();
     Ok(())

@@ -68,7 +68,7 @@ fn page() -> Result<Page, String> {
 fn asked_by_address() -> Result<(Desk, String), String> {
     let search = web_sys::window().and_then(|w| w.location().search().ok()).unwrap_or_default();
     let asked = web_sys::UrlSearchParams::new_with_str(&search).map_err(|e| files::text(&e))?;
-    let specs = asked.get_all("technique").iter().filter_map(|v| v.as_string());
+    let specs = asked.get_all("technique").into_iter().filter_map(|v| v.as_string());
     let specs: Result<Vec<Spec>, String> = specs.map(|s| s.parse::<Spec>().map_err(|e| e.to_string())).collect();
     let mut desk = Desk::new(&specs?);
     for key in ["compare", "show"] {
