@@ -18,7 +18,7 @@ pub struct Browser {
 }
 
 /// SwiftShader draws: it is part of Chromium and the same on every machine.
-const FLAGS: [&str; 13] = [
+const FLAGS: [&str; 14] = [
     "--headless=new",
     "--no-sandbox",
     "--no-first-run",
@@ -30,6 +30,7 @@ const FLAGS: [&str; 13] = [
     "--use-webgpu-adapter=swiftshader",
     "--enable-features=Vulkan",
     "--use-vulkan=swiftshader",
+    "--use-angle=swiftshader",
     "--remote-debugging-port=0",
     "about:blank",
 ];

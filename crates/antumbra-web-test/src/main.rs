@@ -21,7 +21,7 @@ const RESOLUTION: f32 = 0.5;
 /// How far the errors on the page and of the program may be apart.
 const APART: f64 = 0.01;
 /// The longest that anything on the page may take.
-const PATIENCE: Duration = Duration::from_secs(240);
+const PATIENCE: Duration = Duration::from_secs(40);
 
 type Outcome<T> = Result<T, String>;
 
@@ -31,18 +31,36 @@ fn main() -> ExitCode {
         eprintln!("antumbra-web-test PAGE [SPEC … | all]");
         return ExitCode::from(2);
     };
-    let names = antumbra::techniques::TECHNIQUES.iter().map(|t| t.name.to_owned());
-    let specs = match specs {
-        [] => SPECS.map(str::to_owned).to_vec(),
-        [all] if all == "all" => names.collect(),
-        _ => specs.to_vec(),
-    };
-    match run(Path::new(page), &specs) {
+    match chosen(specs).and_then(|specs| run(Path::new(page), &specs)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("the page fails: {error}");
             ExitCode::FAILURE
         }
+    }
+}
+
+fn chosen(arguments: &[String]) -> Outcome<Vec<String>> {
+    match arguments {
+        [] => Ok(SPECS.map(str::to_owned).to_vec()),
+        [all] if all == "all" => {
+            let techniques: Value =
+                serde_json::from_str(&antumbra(&["techniques", "--json"])?).map_err(|e| e.to_string())?;
+            let names = techniques.as_array().into_iter().flatten().filter_map(|t| t["name"].as_str());
+            Ok(names.map(str::to_owned).collect())
+        }
+        _ => Ok(arguments.to_vec()),
+    }
+}
+
+/// What the program prints.
+fn antumbra(arguments: &[&str]) -> Outcome<String> {
+    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
+    let called = Command::new(cargo).args(["run", "--quiet", "--bin", "antumbra", "--"]).args(arguments).output();
+    let output = called.map_err(|e| e.to_string())?;
+    match output.status.success() {
+        true => Ok(String::from_utf8_lossy(&output.stdout).into_owned()),
+        false => Err(String::from_utf8_lossy(&output.stderr).into_owned()),
     }
 }
 
@@ -52,33 +70,43 @@ fn run(page: &Path, specs: &[String]) -> Outcome<()> {
     let address = server::serve(page.to_path_buf()).map_err(|e| e.to_string())?;
     let mut browser = Browser::start(WINDOW)?;
     says_what_is_missing(&mut browser, &address, &shots)?;
+    let drawn = draw(&mut browser, &address, &shots, specs);
+    if drawn.is_err() {
+        let shot = browser.screenshot()?;
+        std::fs::write(shots.join("failed.png"), shot).map_err(|e| e.to_string())?;
+    }
+    drop(browser);
+    let (state, errors) = drawn?;
+    compare(&state, specs, &errors)
+}
 
+/// What the page says at the end, and the error of each technique.
+fn draw(browser: &mut Browser, address: &str, shots: &Path, specs: &[String]) -> Outcome<(Value, Vec<f64>)> {
     let start = Instant::now();
     let first = &specs[0];
     let query = format!("?scene={SCENE}&technique={first}&compare=truth&resolution={RESOLUTION}");
     browser.open(&format!("{address}/{query}"))?;
     browser.wait_for("!!window.antumbra?.ask && document.getElementById('cover').className != ''", PATIENCE)?;
-    ask(&mut browser, &json!("wait"))?;
+    rest(browser)?;
     println!("loaded, drawn and traced in {:.1} s", start.elapsed().as_secs_f32());
 
     let mut errors = Vec::new();
     for spec in specs {
         let start = Instant::now();
-        ask(&mut browser, &json!({ "technique": { "half": 0, "spec": spec } }))?;
-        ask(&mut browser, &json!("wait"))?;
-        let state = ask(&mut browser, &json!("state"))?["state"].clone();
+        ask(browser, &json!({ "technique": { "half": 0, "spec": spec } }))?;
+        rest(browser)?;
+        let state = ask(browser, &json!("state"))?["state"].clone();
         let shot = shots.join(format!("{}.png", spec.replace([':', '=', ','], "-")));
         std::fs::write(&shot, browser.screenshot()?).map_err(|e| format!("{}: {e}", shot.display()))?;
         let seconds = start.elapsed().as_secs_f32();
         errors.push(error_of(&state, spec).inspect_err(|e| println!("{spec}: {e} ({seconds:.1} s)"))?);
         println!("{spec}: average error {:.4} ({seconds:.1} s)", errors[errors.len() - 1]);
     }
-    let state = ask(&mut browser, &json!("state"))?["state"].clone();
+    let state = ask(browser, &json!("state"))?["state"].clone();
     if !browser.errors.is_empty() {
         return Err(format!("errors on the console:\n{}", browser.errors.join("\n")));
     }
-    drop(browser);
-    compare(&state, specs, &errors)
+    Ok((state, errors))
 }
 
 /// Without WebGPU the page says so in words.
@@ -92,6 +120,17 @@ fn says_what_is_missing(browser: &mut Browser, address: &str, shots: &Path) -> O
     std::fs::write(shots.join("no-webgpu.png"), browser.screenshot()?).map_err(|e| e.to_string())?;
     browser.call("Page.removeScriptToEvaluateOnNewDocument", json!({ "identifier": script["identifier"] }))?;
     if said { Ok(()) } else { Err(format!("without WebGPU the page says: {text}")) }
+}
+
+/// Waits until nothing is under way on the page.
+fn rest(browser: &mut Browser) -> Outcome<()> {
+    browser.value("window.rested = false, antumbra.ask('wait').then(() => window.rested = true), 0")?;
+    let rested = browser.wait_for("window.rested || document.getElementById('cover').className == 'failed'", PATIENCE);
+    match rested.and_then(|()| browser.value("window.rested")) {
+        Ok(Value::Bool(true)) => Ok(()),
+        Ok(_) => Err(format!("the page broke off:\n{}", browser.errors.join("\n"))),
+        Err(error) => Err(format!("{error}\n{}", browser.errors.join("\n"))),
+    }
 }
 
 /// The answer to a command.
@@ -123,18 +162,10 @@ fn error_of(state: &Value, spec: &str) -> Outcome<f64> {
 fn compare(state: &Value, specs: &[String], errors: &[f64]) -> Outcome<()> {
     let report = tempfile::tempdir().map_err(|e| e.to_string())?;
     let size = format!("{}x{}", state["picture"][0], state["picture"][1]);
-    let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
-    let mut command = Command::new(cargo);
-    command
-        .args(["run", "--quiet", "--bin", "antumbra", "--", "compare", SCENE, "--size", &size, "-o"])
-        .arg(report.path());
-    for spec in specs {
-        command.args(["-t", spec]);
-    }
-    let output = command.output().map_err(|e| e.to_string())?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
-    }
+    let folder = report.path().to_string_lossy().into_owned();
+    let mut arguments = vec!["compare", SCENE, "--size", &size, "-o", &folder];
+    arguments.extend(specs.iter().flat_map(|spec| ["-t", spec]));
+    antumbra(&arguments)?;
     let file: PathBuf = report.path().join("results.json");
     let text = std::fs::read_to_string(&file).map_err(|e| format!("{}: {e}", file.display()))?;
     let results: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
