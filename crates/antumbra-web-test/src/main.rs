@@ -17,11 +17,11 @@ const SCENE: &str = "builtin:fence";
 const SPECS: [&str; 3] = ["hard", "pcss", "backprojection"];
 /// The window, pixels; the picture is what its panels leave, at this part of the resolution.
 const WINDOW: [u32; 2] = [760, 640];
-const RESOLUTION: f32 = 0.5;
+const RESOLUTION: f32 = 0.25;
 /// How far the errors on the page and of the program may be apart.
 const APART: f64 = 0.01;
 /// The longest that anything on the page may take.
-const PATIENCE: Duration = Duration::from_secs(40);
+const PATIENCE: Duration = Duration::from_secs(420);
 
 type Outcome<T> = Result<T, String>;
 
