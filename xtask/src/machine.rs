@@ -16,6 +16,8 @@ pub enum Need {
     VulkanDriver,
     /// A display without a screen, and a hand for its mouse, for the tests of the window.
     VirtualDisplay,
+    /// A browser with WebGPU, for the test of the page.
+    Chromium,
     /// `cargo fmt`.
     Rustfmt,
     /// `cargo clippy`.
@@ -33,6 +35,7 @@ impl Need {
             Need::VirtualDisplay => {
                 !cfg!(target_os = "linux") || (is_on_path("Xvfb") && available("xdotool", &["--version"]))
             }
+            Need::Chromium => is_on_path("chromium") || env::var_os("CHROMIUM").is_some(),
             Need::Rustfmt => available("cargo", &["fmt", "--version"]),
             Need::Clippy => available("cargo", &["clippy", "--version"]),
         }
@@ -43,6 +46,7 @@ impl Need {
             Need::CppCompiler => "a C++ compiler",
             Need::VulkanDriver => "a Vulkan driver",
             Need::VirtualDisplay => "a virtual display",
+            Need::Chromium => "Chromium",
             Need::Rustfmt => "rustfmt",
             Need::Clippy => "clippy",
         }
@@ -56,6 +60,7 @@ impl Need {
             Need::VirtualDisplay => {
                 &["xvfb", "xdotool", "libx11-xcb1", "libxkbcommon-x11-0", "libxcursor1", "libxi6", "libxrandr2"]
             }
+            Need::Chromium => &["chromium"],
             Need::Rustfmt | Need::Clippy => &[],
         }
     }
@@ -65,7 +70,7 @@ impl Need {
         match self {
             Need::Rustfmt => Some("rustfmt"),
             Need::Clippy => Some("clippy"),
-            Need::CppCompiler | Need::VulkanDriver | Need::VirtualDisplay => None,
+            Need::CppCompiler | Need::VulkanDriver | Need::VirtualDisplay | Need::Chromium => None,
         }
     }
 }

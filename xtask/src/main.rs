@@ -1,8 +1,10 @@
-//! What a contributor types: `cargo xtask demo`, `cargo xtask test`, `cargo xtask fuzz`.
+//! What a contributor types: `cargo xtask demo`, `test`, `fuzz`, `web`, `test-web`.
 
 mod fuzz;
 mod machine;
 mod step;
+mod toolchain;
+mod web;
 
 use std::process::ExitCode;
 
@@ -11,7 +13,9 @@ use step::{Failure, Step, available, cargo};
 const USAGE: &str = "\
 cargo xtask demo [ARGUMENT …]         compare techniques on a built-in scene; arguments go on to `antumbra compare`
 cargo xtask test                      formatting, lints, documentation and all tests, as the CI does
-cargo xtask fuzz [TARGET] [SECONDS]   fuzz one importer, or all in turn, for 60 seconds each";
+cargo xtask fuzz [TARGET] [SECONDS]   fuzz one importer, or all in turn, for 60 seconds each
+cargo xtask web [--out FOLDER]        build the web page of the viewer, for any web server
+cargo xtask test-web                  build it and drive it in a headless browser";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -19,6 +23,8 @@ fn main() -> ExitCode {
         Some((task, rest)) if task == "demo" => demo(rest),
         Some((task, [])) if task == "test" => test(),
         Some((task, rest)) if task == "fuzz" => fuzz::run(rest),
+        Some((task, rest)) if task == "web" => web::run(rest),
+        Some((task, rest)) if task == "test-web" => web::test(rest),
         Some((task, _)) if task == "help" || task == "--help" => {
             println!("{USAGE}");
             Ok(())

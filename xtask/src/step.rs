@@ -1,7 +1,7 @@
 //! Running one command after another, stopping at the first that fails.
 
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 use std::{fmt, io};
@@ -9,6 +9,11 @@ use std::{fmt, io};
 /// The folder that holds the workspace.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("xtask lies in the workspace")
+}
+
+/// The folder of what cargo builds.
+pub fn target() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join("target"), |folder| root().join(folder))
 }
 
 /// Why a task ended early.
@@ -44,17 +49,18 @@ impl fmt::Display for Failure {
     }
 }
 
-/// A command line under construction, run in the workspace's root.
+/// A command line under construction, run in the workspace's root unless it says another folder.
 #[derive(Debug)]
 pub struct Line {
     words: Vec<OsString>,
-    environment: Vec<(&'static str, &'static str)>,
+    folder: Option<PathBuf>,
+    environment: Vec<(&'static str, OsString)>,
 }
 
 impl Line {
     /// A program and its first arguments.
     pub fn new<S: Into<OsString>>(words: impl IntoIterator<Item = S>) -> Self {
-        Self { words: words.into_iter().map(Into::into).collect(), environment: Vec::new() }
+        Self { words: words.into_iter().map(Into::into).collect(), folder: None, environment: Vec::new() }
     }
 
     /// Appends arguments.
@@ -63,9 +69,15 @@ impl Line {
         self
     }
 
+    /// Runs it in another folder.
+    pub fn folder(mut self, folder: &Path) -> Self {
+        self.folder = Some(folder.to_path_buf());
+        self
+    }
+
     /// Sets a variable of the program's environment.
-    pub fn env(mut self, name: &'static str, value: &'static str) -> Self {
-        self.environment.push((name, value));
+    pub fn env(mut self, name: &'static str, value: impl Into<OsString>) -> Self {
+        self.environment.push((name, value.into()));
         self
     }
 }
@@ -74,7 +86,7 @@ impl fmt::Display for Line {
     /// As one would type it.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (name, value) in &self.environment {
-            write!(f, "{name}='{value}' ")?;
+            write!(f, "{name}='{}' ", value.to_string_lossy())?;
         }
         let words: Vec<_> = self.words.iter().map(|word| word.to_string_lossy()).collect();
         f.write_str(&words.join(" "))
@@ -90,6 +102,12 @@ pub fn cargo<const N: usize>(arguments: [&str; N]) -> Line {
 pub fn available(program: &str, arguments: &[&str]) -> bool {
     let status = Command::new(program).args(arguments).stdout(Stdio::null()).stderr(Stdio::null()).status();
     status.is_ok_and(|status| status.success())
+}
+
+/// What a program prints, if it ends well.
+pub fn output(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).stderr(Stdio::null()).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
 /// A command with a name.
@@ -116,7 +134,8 @@ impl Step {
         eprintln!("xtask: {command}");
         let start = Instant::now();
         let mut process = Command::new(&self.line.words[0]);
-        process.args(&self.line.words[1..]).envs(self.line.environment.iter().copied()).current_dir(root());
+        process.args(&self.line.words[1..]).envs(self.line.environment.iter().map(|(name, value)| (name, value)));
+        process.current_dir(self.line.folder.as_deref().unwrap_or(root()));
         let status = process.status().map_err(|error| Failure::Start { command: command.clone(), error })?;
         if status.success() {
             return Ok(start.elapsed());

@@ -2,8 +2,8 @@
 
 use crate::geometry::Geometry;
 use glam::{Vec3, Vec3A};
-use obvhs::{BvhBuildParams, aabb, bvh2::builder::build_bvh2};
-use std::time::Duration;
+use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer};
+use obvhs::{BvhBuildParams, aabb, ploc::PlocBuilder};
 
 /// A box and what is in it: two nodes side by side, or a run of triangles.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +37,7 @@ impl Bvh {
         }
         let bounds: Vec<Bounds> =
             geometry.triangles.iter().map(|t| Bounds(aabb::Aabb::from_points(&t.vertices.map(Vec3A::from)))).collect();
-        let bvh = build_bvh2(&bounds, BvhBuildParams::medium_build(), &mut Duration::default());
+        let bvh = tree(&bounds, &BvhBuildParams::medium_build());
         geometry.reorder(&bvh.primitive_indices);
         let scale = geometry.triangles.iter().flat_map(|t| t.vertices).fold(Vec3::ZERO, |m, v| m.max(v.abs()));
         let nodes = bvh
@@ -55,6 +55,20 @@ impl Bvh {
             .collect();
         Bvh { nodes }
     }
+}
+
+/// The steps of `obvhs::bvh2::builder::build_bvh2`, which also takes the time: there is no such clock in a browser.
+fn tree(bounds: &[Bounds], how: &BvhBuildParams) -> Bvh2 {
+    let indices = (0..bounds.len() as u32).collect();
+    let mut builder = PlocBuilder::with_capacity(bounds.len());
+    let mut bvh =
+        builder.build(how.ploc_search_distance, bounds, indices, how.sort_precision, how.search_depth_threshold);
+    let mut optimizer = ReinsertionOptimizer::default();
+    optimizer.run(&mut bvh, how.reinsertion_batch_ratio, None);
+    collapse(&mut bvh, how.max_prims_per_leaf.clamp(1, 255), how.collapse_traversal_cost);
+    let rest = how.reinsertion_batch_ratio * how.post_collapse_reinsertion_batch_ratio_multiplier;
+    optimizer.run(&mut bvh, rest, None);
+    bvh
 }
 
 /// Keeps a ray that runs exactly in a face of the box inside of it, whatever the sign of a zero direction.

@@ -94,8 +94,14 @@ impl<'a> View<'a> {
 
     /// The pixels of some rows, row after row, on this thread.
     pub fn rows(&self, rows: Range<u32>) -> Vec<Pixel> {
+        self.pixels(0..self.width, rows)
+    }
+
+    /// The pixels of some columns of some rows, row after row, on this thread.
+    pub fn pixels(&self, columns: Range<u32>, rows: Range<u32>) -> Vec<Pixel> {
         let mut buffers = Buffers::default();
-        rows.flat_map(|y| (0..self.width).map(move |x| (x, y))).map(|(x, y)| self.pixel(x, y, &mut buffers)).collect()
+        let places = rows.flat_map(|y| columns.clone().map(move |x| (x, y)));
+        places.map(|(x, y)| self.pixel(x, y, &mut buffers)).collect()
     }
 
     fn pixel(&self, x: u32, y: u32, buffers: &mut Buffers) -> Pixel {

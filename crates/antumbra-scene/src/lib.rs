@@ -23,6 +23,6 @@ pub use bounds::Aabb;
 pub use camera::Camera;
 pub use error::{Place, SceneError};
 pub use light::RectLight;
-pub use load::load;
+pub use load::{ReadFile, load, load_from};
 pub use mesh::{Material, Mesh, Texture, Wrap};
 pub use scene::{Instance, Scene};

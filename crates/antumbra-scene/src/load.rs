@@ -2,17 +2,25 @@
 
 use crate::{Scene, SceneError, builtin};
 
+/// Gives the bytes of a file by its path, or by whatever names files where there is no disk.
+pub type ReadFile<'a> = dyn FnMut(&str) -> std::io::Result<Vec<u8>> + 'a;
+
 /// Loads the scene that an argument names: `builtin:NAME[:key=value,…]`, a model (`.glb`, `.gltf`, `.obj`, `.ply`) or a
 /// scene file (`.toml`, `.json`), in upper or lower case.
 pub fn load(argument: &str) -> Result<Scene, SceneError> {
+    load_from(argument, &mut |file| std::fs::read(file))
+}
+
+/// The same with files that `read` gives: where there is no disk.
+pub fn load_from(argument: &str, read: &mut ReadFile) -> Result<Scene, SceneError> {
     match argument.strip_prefix("builtin:") {
         Some(spec) => builtin::build(spec),
-        None => load_file(argument),
+        None => load_file(argument, read),
     }
 }
 
 #[cfg(not(feature = "import"))]
-fn load_file(argument: &str) -> Result<Scene, SceneError> {
+fn load_file(argument: &str, _read: &mut ReadFile) -> Result<Scene, SceneError> {
     let message = "this program is built without file formats; use builtin:NAME".to_string();
     Err(SceneError::Argument { argument: argument.to_string(), message })
 }
@@ -21,20 +29,20 @@ fn load_file(argument: &str) -> Result<Scene, SceneError> {
 use files::load_file;
 #[cfg(feature = "import")]
 mod files {
-    use super::{Scene, SceneError, builtin};
+    use super::{ReadFile, Scene, SceneError, builtin};
     use crate::import::{self, Model};
     use std::path::Path;
 
     const MODELS: &str = ".glb, .gltf, .obj or .ply";
 
-    pub(super) fn load_file(argument: &str) -> Result<Scene, SceneError> {
+    pub(super) fn load_file(argument: &str, read: &mut ReadFile) -> Result<Scene, SceneError> {
         let path = Path::new(argument);
         let mut scene = match extension(path).as_str() {
             #[cfg(feature = "scene-file")]
-            "toml" => load_scene_file(path, crate::scene_file::Format::Toml)?,
+            "toml" => load_scene_file(path, crate::scene_file::Format::Toml, read)?,
             #[cfg(feature = "scene-file")]
-            "json" => load_scene_file(path, crate::scene_file::Format::Json)?,
-            _ => load_model(path)?.into_scene(),
+            "json" => load_scene_file(path, crate::scene_file::Format::Json, read)?,
+            _ => load_model(path, read)?.into_scene(),
         };
         scene.name = path.file_stem().map_or(argument.into(), |s| s.to_string_lossy().into_owned());
         Ok(scene)
@@ -45,14 +53,18 @@ mod files {
     }
 
     #[cfg(feature = "scene-file")]
-    fn load_scene_file(path: &Path, format: crate::scene_file::Format) -> Result<Scene, SceneError> {
-        let bytes = read(path)?;
+    fn load_scene_file(
+        path: &Path,
+        format: crate::scene_file::Format,
+        read: &mut ReadFile,
+    ) -> Result<Scene, SceneError> {
+        let bytes = bytes_of(path, read)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
-        let mut load = |mesh: &str| load_model(&folder.join(mesh));
+        let mut load = |mesh: &str| load_model(&folder.join(mesh), read);
         crate::scene_file::parse(&bytes, format, &path.display().to_string(), &mut load)
     }
 
-    fn load_model(path: &Path) -> Result<Model, SceneError> {
+    fn load_model(path: &Path, read: &mut ReadFile) -> Result<Model, SceneError> {
         let name = path.display().to_string();
         let parse: fn(&[u8], &str, &mut import::ReadFile) -> Result<Model, SceneError> = match extension(path).as_str()
         {
@@ -64,9 +76,9 @@ mod files {
             "ply" => |bytes, name, _| import::ply::parse(bytes, name),
             _ => return Err(unknown(path, name)),
         };
-        let bytes = read(path)?;
+        let bytes = bytes_of(path, read)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        parse(&bytes, &name, &mut |other| std::fs::read(folder.join(other)))
+        parse(&bytes, &name, &mut |other| read(&folder.join(other).to_string_lossy()))
     }
 
     /// Why a path that no importer takes is not a scene.
@@ -88,11 +100,11 @@ mod files {
         SceneError::Argument { argument, message }
     }
 
-    fn read(path: &Path) -> Result<Vec<u8>, SceneError> {
+    fn bytes_of(path: &Path, read: &mut ReadFile) -> Result<Vec<u8>, SceneError> {
         if path.is_dir() {
             return Err(unknown(path, path.display().to_string()));
         }
         let fail = |source| SceneError::Read { file: path.display().to_string(), referrer: None, source };
-        std::fs::read(path).map_err(fail)
+        read(&path.to_string_lossy()).map_err(fail)
     }
 }

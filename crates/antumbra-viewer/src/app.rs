@@ -2,11 +2,11 @@
 
 use crate::commands::{Answer, Command, State, apply};
 use crate::desk::Desk;
-use crate::light;
 use crate::open::Source;
 use crate::save::{self, Saving};
 use crate::session::Session;
 use crate::ui::{self, Memory, Save, Wishes};
+use crate::{here, light};
 use antumbra::Gpu;
 use eframe::egui;
 use eframe::egui_wgpu::RenderState;
@@ -51,7 +51,7 @@ pub struct App {
     memory: Memory,
     render: RenderState,
     lost: Arc<AtomicBool>,
-    dropped: Vec<PathBuf>,
+    dropped: Vec<egui::DroppedFileHandle>,
     saving: Option<(Saving, Vec<Vec<u8>>)>,
     screenshot: Option<Screenshot>,
     /// Frames that nothing has been under way.
@@ -156,7 +156,7 @@ impl App {
             Err(error) => answer.error = Some(error),
             Ok(None | Some(Command::Wait)) => {}
             Ok(Some(Command::Open(source))) => self.session.open(Source::Argument(source)),
-            Ok(Some(Command::Drop(path))) => self.dropped.push(path),
+            Ok(Some(Command::Drop(path))) => self.dropped.push(here::dropped(path)),
             Ok(Some(Command::State)) => answer.state = Some(self.state(ctx.pixels_per_point())),
             Ok(Some(Command::Dismiss)) => self.memory.notices.clear(),
             Ok(Some(Command::LoseDevice)) => self.session.gpu.device.destroy(),
@@ -164,7 +164,7 @@ impl App {
             Ok(Some(Command::Close)) => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Ok(Some(Command::SaveScene(path))) => {
                 let text = save::scene_text(&self.kept.desk, &self.session);
-                answer.error = text.and_then(|t| std::fs::write(&path, t).map_err(|e| e.to_string())).err();
+                answer.error = text.and_then(|t| here::write(&path, t.as_bytes())).err();
             }
             Ok(Some(Command::Screenshot(path))) => {
                 self.take_screenshot(ctx, Some(path), Some(asked.answer));
@@ -194,10 +194,8 @@ impl App {
             let size = [image.size[0] as u32, image.size[1] as u32];
             let png = crate::export::png(size, &rgba).map_err(|e| e.to_string());
             let kept = png.and_then(|png| match path {
-                Some(path) => {
-                    std::fs::write(&path, png).map(|()| path.display().to_string()).map_err(|e| e.to_string())
-                }
-                None => save::keep("antumbra-window", "png", &png),
+                Some(path) => here::write(&path, &png),
+                None => here::keep("antumbra-window", "png", &png),
             });
             match answer {
                 Some(answer) => answer(Answer { error: kept.err(), state: None }),
@@ -209,7 +207,7 @@ impl App {
         let saved = self.saving.as_mut().and_then(|(saving, parts)| saving.poll(parts));
         if let Some(png) = saved {
             self.saving = None;
-            self.say_kept(png.and_then(|png| save::keep("antumbra", "png", &png)));
+            self.say_kept(png.and_then(|png| here::keep("antumbra", "png", &png)));
         } else if self.saving.is_some() {
             ctx.request_repaint();
         }
@@ -235,7 +233,7 @@ impl App {
             Some(Save::Window) => self.take_screenshot(ctx, None, None),
             Some(Save::Scene) => {
                 let kept = save::scene_text(desk, &self.session)
-                    .and_then(|text| save::keep("antumbra-scene", "toml", text.as_bytes()));
+                    .and_then(|text| here::keep("antumbra-scene", "toml", text.as_bytes()));
                 self.say_kept(kept);
             }
             Some(Save::Spec(half)) => {
@@ -254,7 +252,7 @@ impl App {
         let scene = if desk.is_as_opened() {
             Ok(open.source.clone())
         } else {
-            save::scene_text(desk, &self.session).and_then(|text| save::keep("antumbra-scene", "toml", text.as_bytes()))
+            save::scene_text(desk, &self.session).and_then(|text| here::keep("antumbra-scene", "toml", text.as_bytes()))
         };
         match scene {
             Ok(scene) => {
@@ -269,22 +267,20 @@ impl App {
     /// Opens what was dropped on the window.
     fn take_dropped(&mut self, ctx: &egui::Context) {
         let files = ctx.input(|i| i.raw.dropped_files.clone());
-        let Some(file) = files.first() else { return };
-        if files.len() > 1 {
-            self.memory.notices.done(format!("{} files were dropped; the first is opened", files.len()));
+        if !files.is_empty() {
+            self.session.open(Source::Dropped(files));
         }
-        self.session.open(Source::Argument(file.path().display().to_string()));
     }
 }
 
 impl eframe::App for App {
     fn raw_input_hook(&mut self, _ctx: &egui::Context, input: &mut egui::RawInput) {
-        input.dropped_files.extend(self.dropped.drain(..).map(|path| Arc::new(DroppedPath(path)) as _));
+        input.dropped_files.append(&mut self.dropped);
     }
 
     fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
         if self.is_lost() {
-            crate::restart(ctx);
+            here::restart(ctx);
             return;
         }
         for message in self.session.work(&mut self.kept.desk) {
@@ -352,18 +348,4 @@ fn watch(gpu: &Gpu, ctx: &egui::Context, kept: &Kept, lost: &Arc<AtomicBool>) {
         }
         woken.request_repaint();
     }));
-}
-
-/// A path that came by a command instead of by the mouse.
-#[derive(Debug)]
-struct DroppedPath(PathBuf);
-
-impl egui::DroppedFile for DroppedPath {
-    fn path(&self) -> &std::path::Path {
-        &self.0
-    }
-
-    fn bytes(&self) -> Result<Vec<u8>, String> {
-        std::fs::read(&self.0).map_err(|e| e.to_string())
-    }
 }

@@ -6,7 +6,7 @@ use crate::truth::Truth;
 use antumbra::Gpu;
 use antumbra::resource::Texture;
 use antumbra_metrics::{ErrorFigures, Image, error_figures};
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 /// Least time from one measurement to the next.
 const PAUSE: Duration = Duration::from_millis(400);

@@ -1,10 +1,11 @@
-//! Long work off the frame, on threads of its own.
+//! Long work off the frame: on threads of its own, or in slices between the frames where there are none.
 
+use crate::here;
 use std::future::Future;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
-use std::time::Instant;
+use web_time::{Duration, Instant};
 
 /// Work under way. Dropping it asks it to stop; what it still finds is thrown away.
 pub struct Job<T> {
@@ -23,9 +24,10 @@ pub struct Status {
 }
 
 impl Status {
-    /// Says what comes next; false once nobody waits for it any more.
-    pub fn step(&self, what: &str) -> bool {
+    /// Says what comes next, and lets it be seen; false once nobody waits for it any more.
+    pub async fn step(&self, what: &str) -> bool {
         what.clone_into(&mut self.step.lock().expect("only text is moved under the lock"));
+        here::yield_to_frame().await;
         !self.is_cancelled()
     }
 
@@ -50,7 +52,7 @@ impl<T: Send + 'static> Job<T> {
             let _ = send.send(result);
             wake();
         };
-        run(move || work(own), done);
+        here::run_job(move || work(own), done);
         Job { title: title.into(), started: Instant::now(), status, receiver }
     }
 }
@@ -85,26 +87,29 @@ impl<T> Drop for Job<T> {
 /// The work ended without a result: a bug of ours, unless the device is lost.
 #[derive(Debug, thiserror::Error)]
 #[error("the work broke off, which is a bug in antumbra, please report it: {0}")]
-pub struct Died(String);
+pub struct Died(pub String);
 
-/// Name of the threads that work.
-pub const THREAD: &str = "antumbra job";
+/// How long work goes on before the frame has its turn, where both share a thread.
+const SLICE: Duration = Duration::from_millis(10);
 
-fn run<T, F: Future<Output = T>>(
-    work: impl FnOnce() -> F + Send + 'static,
-    done: impl FnOnce(Result<T, Died>) + Send + 'static,
-) {
-    use std::panic::{AssertUnwindSafe, catch_unwind};
-    let work = move || {
-        let result = catch_unwind(AssertUnwindSafe(|| pollster::block_on(work())));
-        done(result.map_err(|panic| {
-            let text = panic.downcast_ref::<String>().cloned();
-            Died(text.or(panic.downcast_ref::<&str>().map(|t| (*t).to_owned())).unwrap_or_default())
-        }));
-    };
-    let started = std::thread::Builder::new().name(THREAD.to_owned()).spawn(work);
-    // Without a thread the channel closes, and the owner says so.
-    drop(started);
+/// A stretch of work that ends when a frame has to be drawn.
+pub struct Slice(Instant);
+
+impl Default for Slice {
+    fn default() -> Slice {
+        Slice(Instant::now())
+    }
+}
+
+impl Slice {
+    /// To be called every few milliseconds: gives way to the frame once the slice is used up. On a thread of its own
+    /// the work goes right on.
+    pub async fn breathe(&mut self) {
+        if self.0.elapsed() > SLICE {
+            here::yield_to_frame().await;
+            *self = Slice::default();
+        }
+    }
 }
 
 #[cfg(test)]
@@ -126,7 +131,7 @@ mod tests {
             "seven",
             || (),
             |status| async move {
-                status.step("counting");
+                status.step("counting").await;
                 7
             },
         );
@@ -150,7 +155,7 @@ mod tests {
             "long",
             || (),
             move |status| async move {
-                while status.step("on") {
+                while status.step("on").await {
                     std::thread::sleep(std::time::Duration::from_millis(1));
                 }
                 // The test waits for this.

@@ -17,7 +17,6 @@ mod fitter;
 pub mod inspect;
 pub mod job;
 pub mod light;
-mod native;
 pub mod open;
 mod readback;
 mod save;
@@ -28,5 +27,19 @@ pub mod times;
 pub mod truth;
 pub mod ui;
 
-use native::restart;
+#[cfg(not(target_arch = "wasm32"))]
+mod native;
+#[cfg(not(target_arch = "wasm32"))]
+use native as here;
+#[cfg(not(target_arch = "wasm32"))]
 pub use native::{Options, WindowError, run};
+
+#[cfg(target_arch = "wasm32")]
+mod web;
+#[cfg(target_arch = "wasm32")]
+use web as here;
+#[cfg(target_arch = "wasm32")]
+pub use web::open_page;
+
+/// The scene that is shown where none is named.
+const FIRST_SCENE: &str = "builtin:fence";

@@ -1,17 +1,21 @@
 //! Opening a scene in the background: a built-in one or a file.
 
 use crate::desk::Open;
+use crate::here;
 use crate::job::Job;
 use crate::stage::Stage;
 use antumbra::Gpu;
-use antumbra_scene::load;
+use antumbra_scene::{ReadFile, load_from};
+use eframe::egui;
 use std::path::Path;
 use std::sync::Arc;
 
 /// What is to be opened.
 pub enum Source {
-    /// As on the command line: a path or `builtin:NAME`.
+    /// As on the command line: a path (on a page, an address) or `builtin:NAME`.
     Argument(String),
+    /// Files that were dropped: one that is opened, and those that it may refer to.
+    Dropped(Vec<egui::DroppedFileHandle>),
     /// A scene that was open before, and its argument: the device was lost.
     Again(Open),
 }
@@ -26,36 +30,55 @@ pub fn start(
     let gpu = gpu.clone();
     let title = match &source {
         Source::Argument(name) => name.clone(),
+        Source::Dropped(files) => chief(files).map_or_else(String::new, |f| f.display().to_string()),
         Source::Again(open) => open.source.clone(),
     };
     let told = wake.clone();
     Job::start(title, wake, move |status| async move {
-        let say = |what: &str| {
-            let goes_on = status.step(what);
+        let say = async |what: &str| {
             told();
-            if goes_on { Ok(()) } else { Err("cancelled".to_owned()) }
+            if status.step(what).await { Ok(()) } else { Err("cancelled".to_owned()) }
         };
-        say("Reading")?;
-        let open = read(source)?;
+        say("Reading").await?;
+        let open = read(source).await?;
         let triangles = open.scene.triangle_count();
-        say(&format!("Sorting {} triangles for the GPU", thousands(triangles)))?;
+        say(&format!("Sorting {} triangles for the GPU", thousands(triangles))).await?;
         let scene = open.scene.clone();
         let stage = gpu.checked(|| Stage::new(&gpu, scene, pose)).await.map_err(|e| e.to_string())?;
-        say("Ready")?;
+        say("Ready").await?;
         Ok((open, stage))
     })
 }
 
-fn read(source: Source) -> Result<Open, String> {
+async fn read(source: Source) -> Result<Open, String> {
     match source {
         Source::Again(open) => Ok(open),
-        Source::Argument(source) => {
-            let scene = load(&source).map_err(|e| e.to_string())?;
-            let is_file = !source.starts_with("builtin:") && is_scene_file(&source);
-            let text = if is_file { std::fs::read_to_string(&source).ok() } else { None };
-            Ok(Open { source, text, scene: Arc::new(scene) })
+        Source::Argument(name) if name.starts_with("builtin:") => from_files(&name, &mut |_| unreachable!("no file")),
+        Source::Argument(name) => here::load(&name).await,
+        Source::Dropped(files) => {
+            let file = chief(&files).ok_or("nothing was dropped")?.to_owned();
+            here::load_dropped(&file, &files).await
         }
     }
+}
+
+/// What the argument `name` opens, with the bytes that `read` gives.
+pub fn from_files(name: &str, read: &mut ReadFile) -> Result<Open, String> {
+    let scene = load_from(name, read).map_err(|e| e.to_string())?;
+    let is_file = !name.starts_with("builtin:") && is_scene_file(name);
+    let bytes = if is_file { read(name).ok() } else { None };
+    let text = bytes.and_then(|b| String::from_utf8(b).ok());
+    Ok(Open { source: name.to_owned(), text, scene: Arc::new(scene) })
+}
+
+/// The file among those dropped that refers to the others: a scene file, else a model, else the first.
+fn chief(files: &[egui::DroppedFileHandle]) -> Option<&Path> {
+    let rank = |path: &&Path| match extension(&path.to_string_lossy()).as_str() {
+        "toml" | "json" => 0,
+        "glb" | "gltf" | "obj" | "ply" => 1,
+        _ => 2,
+    };
+    files.iter().map(|f| f.path()).min_by_key(rank)
 }
 
 /// True of scene files, false of models.

@@ -1,10 +1,9 @@
-//! Where what is taken away goes: files in the folder that the program was started in.
+//! What is taken away, as the bytes of files.
 
 use crate::desk::{Compare, Desk};
 use crate::export;
 use crate::readback::Readback;
 use crate::session::Session;
-use std::path::{Path, PathBuf};
 
 /// The pictures of both halves on their way to a file.
 pub struct Saving {
@@ -58,36 +57,4 @@ pub fn scene_text(desk: &Desk, session: &Session) -> Result<String, String> {
         format!("# The occluders were turned by {turned:.1} degrees, which a scene file cannot say.\n")
     };
     Ok(note + &file)
-}
-
-/// A name that is not taken in a folder: `name.png`, else `name-2.png` and so on.
-pub fn free_name(folder: &Path, stem: &str, extension: &str) -> PathBuf {
-    let name = |k: u32| match k {
-        1 => folder.join(format!("{stem}.{extension}")),
-        _ => folder.join(format!("{stem}-{k}.{extension}")),
-    };
-    (1..).map(name).find(|p| !p.exists()).unwrap_or_else(|| name(1))
-}
-
-/// Keeps bytes under a name like this; says where.
-pub fn keep(stem: &str, extension: &str, bytes: &[u8]) -> Result<String, String> {
-    let folder = std::env::current_dir().unwrap_or_default();
-    let path = free_name(&folder, stem, extension);
-    std::fs::write(&path, bytes).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
-    Ok(path.display().to_string())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn no_file_is_written_over() {
-        let folder = tempfile::tempdir().unwrap();
-        for wanted in ["a.png", "a-2.png", "a-3.png"] {
-            let path = free_name(folder.path(), "a", "png");
-            assert_eq!(path, folder.path().join(wanted));
-            std::fs::write(path, "").unwrap();
-        }
-    }
 }

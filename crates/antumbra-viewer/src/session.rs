@@ -14,7 +14,7 @@ use antumbra::{Error, Gpu, Recorder, Technique, Timer, View};
 use eframe::egui;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 /// Frames that are drawn after the last change, for techniques that take several to come to rest.
 const SETTLING: u32 = 4;

@@ -1,5 +1,7 @@
 //! The ray-traced truth, refined in the background: from a coarse picture to the very one that `antumbra reference` traces.
 
+use crate::here;
+use crate::job::{Died, Slice};
 use antumbra_reference::{Pixel, Settings, Tracer, View};
 use antumbra_scene::{Camera, RectLight, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
@@ -8,6 +10,9 @@ use std::sync::{Arc, Mutex, OnceLock};
 /// Shadow rays and primary rays of a pixel, level after level. Each level replaces the one before; all but the last
 /// together take a third of its time. The last is what the command line traces.
 const LEVELS: [[u32; 2]; 4] = [[16, 1], [64, 4], [256, 16], [1024, 16]];
+
+/// Pixels that are traced at a stretch.
+const RUN: u32 = 16;
 
 /// What a truth is the truth about.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,13 +39,15 @@ pub struct Picture {
     rows: Vec<u8>,
     /// Counts rows that have come in.
     pub version: u64,
+    /// Why no more will come in.
+    pub died: Option<Died>,
 }
 
 impl Picture {
     fn empty(size: [u32; 2]) -> Picture {
         let count = size[0] as usize * size[1] as usize;
         let rows = vec![0; size[1] as usize];
-        Picture { size, visibility: vec![1.0; count], valid: vec![false; count], rows, version: 0 }
+        Picture { size, visibility: vec![1.0; count], valid: vec![false; count], rows, version: 0, died: None }
     }
 
     /// Puts a row in; rows beside it that have nothing yet show it too, and do not count.
@@ -118,7 +125,7 @@ impl Lazy {
 }
 
 impl Truth {
-    /// Starts tracing on all cores but one. `wake` is called when there is more to show.
+    /// Starts tracing on all cores but one, or between the frames where there are no threads. `wake` is called when there is more to show.
     pub fn start(question: Question, tracer: Arc<Lazy>, wake: impl Fn() + Clone + Send + 'static) -> Truth {
         let picture = Arc::new(Mutex::new(Picture::empty(question.size)));
         let work = Arc::new(Work {
@@ -151,37 +158,53 @@ impl Drop for Truth {
 
 impl Work {
     fn spawn(self: &Arc<Self>, wake: impl Fn() + Clone + Send + 'static) {
-        let threads = std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).max(1));
-        for _ in 0..threads {
-            let (work, wake) = (self.clone(), wake.clone());
-            std::thread::spawn(move || {
-                while work.row() {
+        for _ in 0..here::workers() {
+            let (work, picture, wake) = (self.clone(), self.picture.clone(), wake.clone());
+            let trace = move || async move {
+                let mut slice = Slice::default();
+                while work.row(&mut slice).await {
                     wake();
+                }
+            };
+            here::run_job(trace, move |ended| {
+                if let (Err(died), Ok(mut picture)) = (ended, picture.lock()) {
+                    picture.died = Some(died);
                 }
             });
         }
     }
 
+    fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+
     /// Traces the next row; false if there is none, or nobody wants it.
-    fn row(&self) -> bool {
+    async fn row(&self, slice: &mut Slice) -> bool {
         let [width, height] = self.question.size;
         let next = self.next.fetch_add(1, Ordering::Relaxed);
         let level = (next / height.max(1)) as usize;
-        if level >= LEVELS.len() || self.cancelled.load(Ordering::Relaxed) {
+        if level >= LEVELS.len() {
             return false;
         }
         let [light_samples, pixel_samples] = LEVELS[level];
         let settings = Settings { light_samples, pixel_samples, ..Settings::of_size(width, height) };
         let view = View::new(self.tracer.get(), &self.question.camera, &self.question.light, &settings);
         let y = spread(next % height, height);
-        let pixels = view.rows(y..y + 1);
+        let mut pixels = Vec::with_capacity(width as usize);
+        for x in (0..width).step_by(RUN as usize) {
+            pixels.extend(view.pixels(x..(x + RUN).min(width), y..y + 1));
+            slice.breathe().await;
+            if self.is_cancelled() {
+                return false;
+            }
+        }
         if let Ok(mut picture) = self.picture.lock() {
             // A slow row of a coarser level may come in after a finer one.
             if usize::from(picture.rows[y as usize]) <= level {
                 picture.put(y as usize, level as u8 + 1, &pixels);
             }
         }
-        !self.cancelled.load(Ordering::Relaxed)
+        true
     }
 }
 

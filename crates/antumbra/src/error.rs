@@ -29,6 +29,21 @@ pub enum Error {
     /// The device went away.
     #[error("the GPU device was lost: {0}")]
     Lost(String),
+    /// In a browser nobody waits for the GPU.
+    #[error("this reads from the GPU in the middle of a frame, which a browser does not allow")]
+    CannotWait,
+    /// A shader needs more of something than the device gives.
+    #[error("{shader} needs {needed} {what} in one shader, and this adapter gives {given}")]
+    Limit {
+        /// The shader's module.
+        shader: &'static str,
+        /// What there are too few of.
+        what: &'static str,
+        /// How many it needs.
+        needed: u32,
+        /// How many there are.
+        given: u32,
+    },
     /// The device has no memory left.
     #[error("the GPU is out of memory: {0}; a smaller `map` or picture needs less")]
     OutOfMemory(String),

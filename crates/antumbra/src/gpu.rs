@@ -220,12 +220,12 @@ impl Gpu {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let result = work();
-        let invalid = validation.pop().await;
-        let exhausted = memory.pop().await;
-        if let Some(e) = exhausted {
+        // Both are popped before either is waited for: where all work shares a thread, another call may push its own then.
+        let (invalid, exhausted) = (validation.pop(), memory.pop());
+        if let Some(e) = exhausted.await {
             return Err(Error::OutOfMemory(e.to_string()));
         }
-        if let Some(e) = invalid {
+        if let Some(e) = invalid.await {
             return Err(Error::Validation(e.to_string()));
         }
         result

@@ -130,6 +130,21 @@ fn bind_group(
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(name), layout, entries: &entries })
 }
 
+/// Refuses a shader that needs more than the device gives, by name: what the driver says is for us, not for users.
+fn check_limits(device: &wgpu::Device, key: &ShaderKey, program: &Program, entry: &str) -> Result<(), Error> {
+    let (needs, limits) = (program.needs(entry), device.limits());
+    let pairs = [
+        ("storage buffers", needs.storage_buffers, limits.max_storage_buffers_per_shader_stage),
+        ("storage textures", needs.storage_textures, limits.max_storage_textures_per_shader_stage),
+        ("textures", needs.sampled_textures, limits.max_sampled_textures_per_shader_stage),
+        ("bytes of workgroup memory", needs.workgroup_bytes, limits.max_compute_workgroup_storage_size),
+    ];
+    match pairs.into_iter().find(|(_, needed, given)| needed > given) {
+        None => Ok(()),
+        Some((what, needed, given)) => Err(Error::Limit { shader: key.module, what, needed, given }),
+    }
+}
+
 type ComputeKey = (ShaderKey, &'static str);
 type RenderKey = (ShaderKey, RenderTarget);
 
@@ -153,6 +168,7 @@ impl PipelineCache {
             return Ok(found.clone());
         }
         let program = Program::compose(key)?;
+        check_limits(device, key, &program, entry)?;
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(key.module),
             layout: None,
@@ -182,8 +198,11 @@ impl PipelineCache {
             return Ok(found.clone());
         }
         let program = Program::compose(key)?;
-        let module = shader_module(device, key, &program);
         let has_fragment = program.entry_points().any(|e| e == "fragment");
+        for entry in ["vertex", "fragment"] {
+            check_limits(device, key, &program, entry)?;
+        }
+        let module = shader_module(device, key, &program);
         let one = wgpu::BlendFactor::One;
         let sum = wgpu::BlendComponent { src_factor: one, dst_factor: one, operation: wgpu::BlendOperation::Add };
         let blend = target.adds.then_some(wgpu::BlendState { color: sum, alpha: sum });

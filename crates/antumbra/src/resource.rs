@@ -1,6 +1,7 @@
 //! Textures and buffers that know their size in bytes, and reading them back.
 
 use crate::{Error, Gpu};
+use std::sync::mpsc::{TryRecvError, channel};
 use wgpu::util::DeviceExt;
 
 /// A 2D texture (or array) with a view of all of it.
@@ -264,12 +265,16 @@ fn staging(gpu: &Gpu, size: u64) -> wgpu::Buffer {
 }
 
 async fn map(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
-    let (send, receive) = std::sync::mpsc::channel();
+    let (send, receive) = channel();
     staging.map_async(wgpu::MapMode::Read, .., move |result| {
         // The receiver lives until the message has come.
         let _ = send.send(result);
     });
     gpu.wait()?;
-    receive.recv().map_err(|e| Error::Lost(e.to_string()))?.map_err(|e| Error::Lost(e.to_string()))?;
+    match receive.try_recv() {
+        Ok(mapped) => mapped.map_err(|e| Error::Lost(e.to_string()))?,
+        Err(TryRecvError::Empty) => return Err(Error::CannotWait),
+        Err(e) => return Err(Error::Lost(e.to_string())),
+    }
     Ok(staging.get_mapped_range(..).map_err(|e| Error::Lost(e.to_string()))?.to_vec())
 }

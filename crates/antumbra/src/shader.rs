@@ -132,6 +132,19 @@ pub struct Program {
     info: ModuleInfo,
 }
 
+/// What one shader takes of what devices give a limited number of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Storage buffers.
+    pub storage_buffers: u32,
+    /// Storage textures.
+    pub storage_textures: u32,
+    /// Textures that are sampled or loaded from.
+    pub sampled_textures: u32,
+    /// Memory that a workgroup shares.
+    pub workgroup_bytes: u32,
+}
+
 /// Group and slot of each resource, by the name of its variable.
 pub type Bindings = BTreeMap<String, (u32, u32)>;
 
@@ -177,6 +190,28 @@ impl Program {
     /// Threads of a workgroup of a compute entry point.
     pub fn workgroup_size(&self, entry: &str) -> [u32; 3] {
         self.module.entry_points.iter().find(|e| e.name == entry).map_or([1; 3], |e| e.workgroup_size)
+    }
+
+    /// What an entry point takes of the device's limits, by what it is.
+    pub fn needs(&self, entry: &str) -> Needs {
+        let mut needs = Needs::default();
+        let Some(i) = self.module.entry_points.iter().position(|e| e.name == entry) else { return needs };
+        let used = self.module.global_variables.iter().filter(|(h, _)| !self.info.get_entry_point(i)[*h].is_empty());
+        for (_, variable) in used {
+            let inner = &self.module.types[variable.ty].inner;
+            match (variable.space, inner) {
+                (naga::AddressSpace::Storage { .. }, _) => needs.storage_buffers += 1,
+                (naga::AddressSpace::WorkGroup, _) => {
+                    needs.workgroup_bytes += inner.size(self.module.to_ctx()).next_multiple_of(16);
+                }
+                (_, naga::TypeInner::Image { class: naga::ImageClass::Storage { .. }, .. }) => {
+                    needs.storage_textures += 1;
+                }
+                (_, naga::TypeInner::Image { .. }) => needs.sampled_textures += 1,
+                _ => {}
+            }
+        }
+        needs
     }
 
     /// The resources that the named entry points use.

@@ -14,7 +14,7 @@ mod polygon;
 use crate::{Aabb, Camera, Instance, Material, Mesh, RectLight, SceneError};
 
 /// Gives the bytes of a file that the imported file refers to, by the name it uses.
-pub type ReadFile<'a> = dyn FnMut(&str) -> std::io::Result<Vec<u8>> + 'a;
+pub use crate::ReadFile;
 
 /// Coordinates beyond this, in metres, leave single precision no room for the squares and products of rendering.
 const FARTHEST: f32 = 1e9;

@@ -3,7 +3,7 @@
 use super::style;
 use crate::session::Session;
 use eframe::egui::{self, Align2, Color32, Rect, RichText, vec2};
-use std::time::{Duration, Instant};
+use web_time::{Duration, Instant};
 
 /// How long good news stay.
 const SHOWN: Duration = Duration::from_secs(6);

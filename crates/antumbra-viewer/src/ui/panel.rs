@@ -101,6 +101,9 @@ fn truth(ui: &mut egui::Ui, session: &Session) {
         return;
     }
     if let Ok(picture) = truth.picture.lock() {
+        if let Some(died) = &picture.died {
+            ui.colored_label(style::BAD, died.to_string());
+        }
         let done = picture.done();
         let text = if done < 1.0 {
             format!("{} rays a pixel, {:.0} %", picture.rays(), 100.0 * done)

@@ -1,4 +1,10 @@
-//! The window.
+//! The window, and what a program on a computer has: threads and files.
+
+mod files;
+mod jobs;
+
+pub use files::{dropped, keep, load, load_dropped, write};
+pub use jobs::{run as run_job, workers, yield_to_frame};
 
 use crate::app::{App, Asked, Keep, Kept};
 use crate::commands::Answer;
@@ -9,7 +15,6 @@ use eframe::egui;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use std::collections::VecDeque;
 use std::io::{BufRead, Write};
-use std::panic::{set_hook, take_hook};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// How the viewer is opened.
@@ -32,9 +37,6 @@ pub struct Options {
 #[error("the window cannot be opened: {0}")]
 pub struct WindowError(String);
 
-/// The scene that is shown where none is named.
-const FIRST_SCENE: &str = "builtin:fence";
-
 /// Opens the window and returns when it is closed. Has to be called on the program's first thread.
 pub fn run(options: Options) -> Result<(), WindowError> {
     let commands = Arc::new(Mutex::new(VecDeque::new()));
@@ -42,8 +44,8 @@ pub fn run(options: Options) -> Result<(), WindowError> {
     if options.commands {
         listen(commands.clone(), waker.clone());
     }
-    leave_panics_of_jobs_to_their_owners();
-    let scene = options.scene.unwrap_or_else(|| FIRST_SCENE.to_owned());
+    jobs::leave_panics_of_jobs_to_their_owners();
+    let scene = options.scene.unwrap_or_else(|| crate::FIRST_SCENE.to_owned());
     let keep: Keep = Arc::new(Mutex::new(Some(Kept {
         desk: Desk::new(&options.specs),
         first: Some(Source::Argument(scene)),
@@ -68,16 +70,6 @@ pub fn run(options: Options) -> Result<(), WindowError> {
             None => return Ok(()),
         }
     }
-}
-
-/// Leaves panics of background work to those who wait for its result; the window's are reported as ever.
-fn leave_panics_of_jobs_to_their_owners() {
-    let usual = take_hook();
-    set_hook(Box::new(move |info| {
-        if std::thread::current().name() != Some(crate::job::THREAD) {
-            usual(info);
-        }
-    }));
 }
 
 /// Ends this window so that another one opens on a fresh device.
