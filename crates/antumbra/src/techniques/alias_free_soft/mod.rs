@@ -161,7 +161,7 @@ impl Technique for AliasFreeSoft {
                 lattice: &self.uniform,
                 placements: &self.placements,
                 lattice_points: &self.rows,
-                triangles: &triangles.buffer,
+                triangles: &triangles.texels,
                 clusters: &triangles.clusters,
                 cluster_length: &triangles.cluster_length.0,
                 soft: &soft,
