@@ -101,9 +101,9 @@ impl LightTriangles {
             texels: Texture::new(
                 gpu,
                 "light triangles",
-                [3 * TEXEL_ROW, drawn.div_ceil(TEXEL_ROW).max(1)],
+                [4 * TEXEL_ROW, drawn.div_ceil(TEXEL_ROW).max(1)],
                 1,
-                wgpu::TextureFormat::Rgba32Uint,
+                wgpu::TextureFormat::Rgba32Float,
                 wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
             ),
             length: ListLength::unknown(gpu, "number of light triangles"),
@@ -131,7 +131,8 @@ impl LightTriangles {
             .with::<FrameUniform>()
             .with::<BatchLayout>()
             .with::<GatherUniform>()
-            .feature("clusters", self.reach == Reach::Light);
+            .feature("clusters", self.reach == Reach::Light)
+            .feature("masked", self.reach == Reach::Light && part.masked.is_some());
         let gather = recorder.gpu.compute_pipeline(&key, "gather_triangles")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
         let half_light = match self.reach {

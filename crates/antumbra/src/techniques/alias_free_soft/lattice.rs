@@ -6,7 +6,7 @@
 use glam::{DMat2, DVec2};
 
 /// Most rows of a lattice of 256 points.
-pub(crate) const MOST_ROWS: usize = 32;
+pub(crate) const MOST_ROWS: usize = 24;
 
 /// A lattice of `points` points in the square.
 #[derive(Clone, Debug)]
@@ -77,9 +77,9 @@ mod tests {
 
     #[test]
     fn every_place_of_a_lattice_has_all_points_in_the_square_and_no_two_in_a_line_with_its_edges() {
-        for points in [2, 6, 32, 37, 64, 100, 128, 255, 256] {
+        for points in 2..=256 {
             let lattice = Lattice::new(points);
-            for k in 0..40 {
+            for k in 0..16 {
                 let by = (DVec2::new(0.754_877_666, 0.569_840_296) * f64::from(k) + 0.5 / f64::from(points)).fract();
                 let placed = lattice.placed(by);
                 assert!(placed.rows.len() <= MOST_ROWS, "{} rows", placed.rows.len());
