@@ -38,6 +38,13 @@ pub struct Part {
     pub masked: Option<usize>,
 }
 
+impl Part {
+    /// Clusters in it.
+    pub fn cluster_count(&self) -> u32 {
+        self.clusters.iter().map(|(_, _, count)| count).sum()
+    }
+}
+
 /// Triangles in light space.
 pub struct LightTriangles {
     /// `LightTriangle`, see `shaders/light_triangles.wesl`, where only the light's centre counts.
@@ -116,7 +123,7 @@ impl LightTriangles {
 
     /// Triangles of the largest of these parts, whole clusters counted.
     pub fn capacity_for(parts: &[Part]) -> u32 {
-        let clusters = parts.iter().map(|p| p.clusters.iter().map(|(_, _, n)| n).sum::<u32>()).max();
+        let clusters = parts.iter().map(Part::cluster_count).max();
         clusters.unwrap_or(0).max(1) * CLUSTER_TRIANGLES
     }
 
