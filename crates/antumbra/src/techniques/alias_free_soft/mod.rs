@@ -14,7 +14,7 @@ use crate::shader::{HostStruct, ShaderKey};
 use crate::technique::{About, Describe, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
 use glam::{DVec2, Vec2, Vec4};
-use lattice::{Lattice, MOST_ROWS};
+use lattice::{Lattice, MOST_POINTS, MOST_ROWS};
 use rounds::{Between, Rounds};
 
 pub(crate) mod lattice;
@@ -34,7 +34,7 @@ crate::settings! {
     /// Settings of [`AliasFreeSoft`].
     pub struct AliasFreeSoftSettings {
         /// Points of the light.
-        samples: u32 = 256, Kind::Integer { min: 2, max: 256 };
+        samples: u32 = 256, Kind::Integer { min: 2, max: MOST_POINTS };
         /// The same points for all pixels, or moved and mirrored from pixel to pixel.
         points: Points = Points::Same, Kind::Choice { options: Points::OPTIONS };
     }
@@ -144,11 +144,11 @@ impl Technique for AliasFreeSoft {
         let triangles = self.triangles.as_ref().expect("just made");
         gpu.queue.write_buffer(&self.uniform, 0, &self.lattice_uniform(frame).uniform_bytes());
         let placements = if self.settings.points == Points::Moved { PLACEMENTS } else { 1 };
-        let count = parts.len() as u32;
+        let (count, samples) = (parts.len() as u32, self.settings.samples);
         let looks: Vec<TriangleLook> = (0..count)
             .zip(&parts)
             .flat_map(|(part, triangles)| {
-                let Rounds { most, looks } = Rounds::of(gpu, triangles);
+                let Rounds { most, looks } = Rounds::of(gpu, triangles, samples);
                 (0..looks).map(move |look| TriangleLook { part, parts: count, look, rounds: most, placements })
             })
             .collect();

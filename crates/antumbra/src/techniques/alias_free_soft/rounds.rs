@@ -23,19 +23,17 @@ const LLVMPIPE_ROUNDS: u32 = 65_000;
 const CLUSTER_ROUNDS: u32 = 32;
 /// Sets of four rows.
 const SETS: u32 = MOST_ROWS as u32 / 4;
-/// Most points of the light.
-const POINTS: u32 = 256;
 /// Threads that go round together.
 const GROUP: u32 = 8;
 
 impl Rounds {
-    /// Of a part of the triangles. Drivers of GPUs end no loop.
-    pub fn of(gpu: &Gpu, part: &Part) -> Rounds {
+    /// Of a part of the triangles, for so many points of the light. Drivers of GPUs end no loop.
+    pub fn of(gpu: &Gpu, part: &Part, points: u32) -> Rounds {
         if !gpu.is_software() {
             return Rounds { most: u32::MAX, looks: 1 };
         }
         let masked = part.masked.is_some();
-        let (loops, lookups) = if masked { (2, POINTS) } else { (1, 0) };
+        let (loops, lookups) = if masked { (2, points) } else { (1, 0) };
         let triangles = CLUSTER_ROUNDS + CLUSTER_TRIANGLES * (1 + loops * SETS);
         // What a cluster may need, and what it may be counted as: lookups are summed over threads.
         let needed = triangles + CLUSTER_TRIANGLES * lookups;
