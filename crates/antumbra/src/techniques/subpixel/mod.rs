@@ -42,8 +42,8 @@ gpu_struct! {
     }
 }
 
-/// Bytes of a `StoredFacet` in `facet.wesl`.
-const FACET_BYTES: u64 = 32;
+/// Facets side by side in a row of texels, two a facet; see `facet.wesl`.
+const FACET_ROW: u32 = 2048;
 
 /// Standard deviation of the Gaussian, in pixels.
 const GAUSSIAN_WIDTH: f64 = 0.5;
@@ -67,6 +67,7 @@ pub struct Subpixel {
     room: Room,
     lists: Option<TexelLists>,
     pairs: Option<TrianglePairs>,
+    strips: Option<UniformArray<StripUniform>>,
 }
 
 /// What is counted for reports.
@@ -78,18 +79,25 @@ struct Counters {
 /// What is kept of each pixel.
 struct Pixels {
     size: [u32; 2],
-    facets: wgpu::Buffer,
+    facets: Texture,
     masks: wgpu::Buffer,
 }
 
 impl Pixels {
     fn ensure<'a>(slot: &'a mut Option<Pixels>, gpu: &Gpu, size: [u32; 2], words: usize) -> &'a Pixels {
         if slot.as_ref().is_none_or(|p| p.size != size) {
-            let count = u64::from(size[0]) * u64::from(size[1]);
+            let count = size[0] * size[1];
             *slot = Some(Pixels {
                 size,
-                facets: storage_buffer(gpu, "facets", count * FACET_BYTES),
-                masks: storage_buffer(gpu, "masks of samples", count * words as u64 * 8),
+                facets: Texture::new(
+                    gpu,
+                    "facets",
+                    [2 * FACET_ROW, count.div_ceil(FACET_ROW)],
+                    1,
+                    wgpu::TextureFormat::Rgba32Float,
+                    wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+                ),
+                masks: storage_buffer(gpu, "masks of samples", u64::from(count) * words as u64 * 8),
             });
         }
         slot.as_ref().expect("just made")
@@ -135,6 +143,7 @@ impl Describe for Subpixel {
             pixels: None,
             lists: None,
             pairs: None,
+            strips: None,
         })
     }
 }
@@ -188,7 +197,7 @@ impl Technique for Subpixel {
             recorder.encoder.clear_buffer(&self.counters.evaluations, 0, None);
             recorder.encoder.clear_buffer(&self.counters.pixels, 0, None);
         }
-        let strips = UniformArray::new(gpu, "strips", &plan.strips);
+        let strips = UniformArray::ensure(&mut self.strips, gpu, "strips", &plan.strips);
         let parts = TrianglePairs::parts(frame, lists);
         let pairs = TrianglePairs::ensure(&mut self.pairs, gpu, &parts, self.room.pair_bytes());
         for i in 0..plan.strips.len() as u32 {
@@ -215,7 +224,7 @@ impl Technique for Subpixel {
     fn memory(&self) -> Vec<Memory> {
         let own = [&self.places, &self.weights, &self.sampling, &self.counters.evaluations, &self.counters.pixels];
         let tables = own.iter().map(|b| b.size()).sum::<u64>() + self.half_planes.bytes();
-        let pixels = self.pixels.iter().map(|p| Memory::new("facets", p.facets.size() + p.masks.size()));
+        let pixels = self.pixels.iter().map(|p| Memory::new("facets", p.facets.bytes() + p.masks.size()));
         self.map
             .iter()
             .flat_map(DepthMap::memory)
