@@ -1,8 +1,8 @@
 //! The soft shadow is that of the rays, to within the number of points.
 
 use super::common::{builtin, camera, compared, cuboid, ground, light, quad, scene, truth, visibility};
-use glam::Vec2;
 use antumbra_scene::{Material, Mesh, Scene, Texture, Wrap};
+use glam::Vec2;
 use std::sync::Arc;
 
 const SIZE: [u32; 2] = [64, 48];

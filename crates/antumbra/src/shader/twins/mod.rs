@@ -16,6 +16,7 @@ mod ray_to_center;
 mod smooth_kernel;
 mod summed_area;
 
+use crate::pipeline::Binding;
 use crate::recorder::Work;
 use crate::resource::{buffer_of, read_buffer, storage_buffer};
 use crate::shader::ShaderKey;
@@ -24,7 +25,7 @@ use pollster::block_on;
 use std::sync::OnceLock;
 
 /// The device that all tests share. A machine without an adapter fails the test.
-fn gpu() -> &'static Gpu {
+pub(crate) fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
     GPU.get_or_init(|| {
         block_on(Gpu::new(&AdapterChoice::Best)).unwrap_or_else(|e| {
@@ -47,26 +48,41 @@ fn evaluate_variant(
     stride: usize,
     outputs: usize,
 ) -> Vec<Vec<f32>> {
+    let key = ShaderKey { features: features.to_vec(), ..ShaderKey::new("host") };
+    evaluate_on(gpu(), key, ("f32", text), input, stride, outputs, &[])
+}
+
+/// [`evaluate`] of a text in a shader that has more structs, features or bindings, and writes words of the named kind.
+pub(crate) fn evaluate_on<T: bytemuck::Pod>(
+    gpu: &Gpu,
+    key: ShaderKey,
+    (kind, text): (&str, &str),
+    input: &[f32],
+    stride: usize,
+    outputs: usize,
+    more: &[Binding],
+) -> Vec<Vec<T>> {
     let count = input.len() / stride;
     let kernel = format!(
         "{text}
         @group(0) @binding(30) var<storage, read> input: array<f32>;
-        @group(0) @binding(31) var<storage, read_write> output: array<f32>;
+        @group(0) @binding(31) var<storage, read_write> output: array<{kind}>;
         @compute @workgroup_size(64) fn each(@builtin(global_invocation_id) id: vec3<u32>) {{
             if id.x < {count}u {{ evaluate(id.x * {stride}u, id.x * {outputs}u); }}
-        }}"
+        }}
+        {}",
+        key.structs
     );
-    let gpu = gpu();
-    let key = ShaderKey { structs: kernel, features: features.to_vec(), ..ShaderKey::new("host") };
+    let key = ShaderKey { structs: kernel, ..key };
     let pipeline = gpu.compute_pipeline(&key, "each").unwrap_or_else(|e| panic!("{e}"));
     let source = buffer_of(gpu, "input", bytemuck::cast_slice(input), wgpu::BufferUsages::STORAGE);
     let target = storage_buffer(gpu, "output", (count * outputs * 4) as u64);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let set = bindings! { input: &source, output: &target };
-    Recorder::new(gpu, &mut encoder).compute("twin", &pipeline, set, Work::Threads([count as u32, 1, 1]));
+    let set = [bindings! { input: &source, output: &target }, more].concat();
+    Recorder::new(gpu, &mut encoder).compute("twin", &pipeline, &set, Work::Threads([count as u32, 1, 1]));
     gpu.queue.submit([encoder.finish()]);
-    let words: Vec<f32> = bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, &target)).expect("reads"));
-    words.chunks_exact(outputs).take(count).map(<[f32]>::to_vec).collect()
+    let words: Vec<T> = bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, &target)).expect("reads"));
+    words.chunks_exact(outputs).take(count).map(<[T]>::to_vec).collect()
 }
 
 /// Reproducible numbers in [0, 1).

@@ -56,8 +56,8 @@ pub struct Subpixel {
     resolve: Arc<ComputePipeline>,
     sampling: wgpu::Buffer,
     half_planes: Texture,
-    /// Where the samples lie, `vec2<f32>` each, for surfaces with holes.
-    places: wgpu::Buffer,
+    /// Where the samples lie, for surfaces with holes.
+    places: Texture,
     /// What the Gaussian gives each sample of the 3 x 3 pixels around.
     weights: wgpu::Buffer,
     counters: Counters,
@@ -129,7 +129,7 @@ impl Describe for Subpixel {
             resolve: gpu.compute_pipeline(&resolve, "resolve")?,
             sampling: uniform(gpu, "sampling", &SamplingUniform { samples }),
             half_planes: half_planes::table(gpu, &pattern),
-            places: buffer_of(gpu, "samples", bytemuck::cast_slice(&places), storage),
+            places: place_texels(gpu, &places),
             weights: buffer_of(gpu, "weights", bytemuck::cast_slice(&gaussian(&pattern)), storage),
             counters: Counters {
                 evaluations: storage_buffer(gpu, "visibility evaluations", 16),
@@ -154,6 +154,17 @@ pub(crate) fn key_for(key: ShaderKey, pattern: &Pattern) -> ShaderKey {
         .feature("four_words", pattern.words() == 4)
         .with::<SamplingUniform>()
         .with::<StripUniform>()
+}
+
+/// Where the samples lie, a texel each.
+fn place_texels(gpu: &Gpu, places: &[[f32; 2]]) -> Texture {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let size = [places.len() as u32, 1];
+    let texture = Texture::new(gpu, "samples", size, 1, wgpu::TextureFormat::Rg32Float, usage);
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: None, rows_per_image: None };
+    let extent = texture.texture.size();
+    gpu.queue.write_texture(texture.texture.as_image_copy(), bytemuck::cast_slice(places), layout, extent);
+    texture
 }
 
 /// The weight of each sample of the 3 x 3 pixels around the middle one; 32 to a word of their masks.
@@ -222,8 +233,8 @@ impl Technique for Subpixel {
     }
 
     fn memory(&self) -> Vec<Memory> {
-        let own = [&self.places, &self.weights, &self.sampling, &self.counters.evaluations, &self.counters.pixels];
-        let tables = own.iter().map(|b| b.size()).sum::<u64>() + self.half_planes.bytes();
+        let own = [&self.weights, &self.sampling, &self.counters.evaluations, &self.counters.pixels];
+        let tables = own.iter().map(|b| b.size()).sum::<u64>() + self.places.bytes() + self.half_planes.bytes();
         let pixels = self.pixels.iter().map(|p| Memory::new("facets", p.facets.bytes() + p.masks.size()));
         self.map
             .iter()
