@@ -176,16 +176,40 @@ const UNIFORM_STRIDE: u64 = 256;
 impl<T: crate::shader::HostStruct + Copy> UniformArray<T> {
     /// The values, in order.
     pub fn new(gpu: &Gpu, label: &str, values: &[T]) -> Self {
+        UniformArray {
+            buffer: buffer_of(
+                gpu,
+                label,
+                &Self::bytes(values),
+                wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            ),
+            size: values.first().map_or(0, |v| v.uniform_bytes().len() as u64),
+            values: values.to_vec(),
+        }
+    }
+
+    /// The values of this frame, in the buffer of the last one if it has room.
+    pub fn ensure<'a>(slot: &'a mut Option<Self>, gpu: &Gpu, label: &str, values: &[T]) -> &'a Self {
+        let bytes = Self::bytes(values);
+        match slot {
+            Some(array) if array.buffer.size() >= bytes.len() as u64 => {
+                gpu.queue.write_buffer(&array.buffer, 0, &bytes);
+                array.values.clear();
+                array.values.extend_from_slice(values);
+            }
+            _ => *slot = Some(UniformArray::new(gpu, label, values)),
+        }
+        slot.as_ref().expect("just made")
+    }
+
+    /// As they are bound.
+    fn bytes(values: &[T]) -> Vec<u8> {
         let mut bytes = Vec::new();
         for value in values {
             bytes.extend(value.uniform_bytes());
             bytes.resize(bytes.len().next_multiple_of(UNIFORM_STRIDE as usize), 0);
         }
-        UniformArray {
-            buffer: buffer_of(gpu, label, &bytes, wgpu::BufferUsages::UNIFORM),
-            size: values.first().map_or(0, |v| v.uniform_bytes().len() as u64),
-            values: values.to_vec(),
-        }
+        bytes
     }
 
     /// The value at `index`.

@@ -235,7 +235,7 @@ fn module_path(path: &str) -> ModulePath {
 }
 
 #[cfg(test)]
-mod twins;
+pub(crate) mod twins;
 
 #[cfg(test)]
 mod tests {

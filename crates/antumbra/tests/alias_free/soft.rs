@@ -1,14 +1,20 @@
 //! The soft shadow is that of the rays, to within the number of points.
 
 use super::common::{builtin, camera, compared, cuboid, ground, light, quad, scene, truth, visibility};
-use antumbra_scene::Scene;
+use antumbra_scene::{Material, Mesh, Scene, Texture, Wrap};
+use glam::Vec2;
+use std::sync::Arc;
 
 const SIZE: [u32; 2] = [64, 48];
 
 /// Mean error against the truth.
 fn error(scene: &Scene, spec: &str) -> f64 {
-    let truth = truth(scene, SIZE, 1024);
-    let figures = compared(&visibility(scene, spec, SIZE), &truth);
+    error_at(scene, spec, SIZE)
+}
+
+fn error_at(scene: &Scene, spec: &str, size: [u32; 2]) -> f64 {
+    let truth = truth(scene, size, 1024);
+    let figures = compared(&visibility(scene, spec, size), &truth);
     println!("{} by {spec}: {figures:?}", scene.name);
     figures.average_error
 }
@@ -61,4 +67,53 @@ fn triangles_through_the_light_and_the_ground_hide_what_they_should() {
     );
     let found = error(&scene, "alias-free-soft");
     assert!(found < 0.006, "{found:.4}");
+}
+
+/// Small boards, scattered from the ground to the light: all of them stand between each pixel and some point of the light,
+/// and none hides much.
+fn scattered(count: u32, half: [f32; 2]) -> Mesh {
+    let place = |i: u32, step: f64| ((f64::from(i) + 0.5) * step).fract() as f32;
+    let mut mesh = Mesh::default();
+    for i in 0..count {
+        // The golden ratio's sequence in three dimensions [Roberts 2018].
+        let [x, y, z] = [0.819_172_513_4, 0.671_043_607_0, 0.549_700_478_3].map(|step| place(i, step));
+        let board = quad([0.5 * (x - 0.5), 0.5 + 2.0 * y, 0.5 * (z - 0.5)], half);
+        let first = mesh.positions.len() as u32;
+        mesh.indices.extend(board.indices.iter().map(|k| first + k));
+        mesh.positions.extend(board.positions);
+        mesh.uvs.extend([Vec2::ZERO, Vec2::X, Vec2::ONE, Vec2::Y]);
+    }
+    mesh
+}
+
+/// Few pixels, so that a tile of them is close together and everything is in its shaft.
+fn few_pixels(boards: Mesh) -> Scene {
+    let view = camera([0.0, 0.4, 1.2], [0.0; 3], 12.0);
+    scene(vec![ground(3.0), boards], view, light([0.0, 3.0, 0.0], [0.0; 3], 0.5))
+}
+
+/// llvmpipe ends the loops of a thread after 65 535 rounds in all, and leaves undone what comes after them. The bound is
+/// that of 256 points of which each is hidden or not by itself.
+#[test]
+fn a_tile_may_meet_more_triangles_than_a_thread_goes_round() {
+    let scene = few_pixels(scattered(16_000, [0.00002, 0.6]));
+    for points in ["256", "480"] {
+        let found = error_at(&scene, &format!("alias-free-soft:samples={points}"), [16, 16]);
+        assert!(found < 0.03, "{points} points: {found:.4}");
+    }
+}
+
+/// The same for points that are looked up in a material with holes, one round a point: of 1024 texels one is no hole.
+#[test]
+fn a_tile_may_look_up_more_points_than_a_thread_goes_round() {
+    let mut scene = few_pixels(scattered(300, [0.8; 2]));
+    let alpha = (0..1024).flat_map(|texel| [255, 255, 255, if texel == 400 { 255 } else { 0 }]).collect();
+    let texture = Texture { width: 32, height: 32, rgba: alpha, wrap: [Wrap::Repeat; 2], nearest: true };
+    let holes = Material { texture: Some(Arc::new(texture)), alpha_cutoff: Some(0.5), ..Material::default() };
+    scene.materials.push(holes);
+    scene.meshes[1].material = 1;
+    for points in ["256", "480"] {
+        let found = error_at(&scene, &format!("alias-free-soft:samples={points}"), [16, 16]);
+        assert!(found < 0.03, "{points} points: {found:.4}");
+    }
 }

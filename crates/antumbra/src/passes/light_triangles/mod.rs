@@ -5,7 +5,7 @@ use crate::casters::{Batch, BatchLayout, CLUSTER_TRIANGLES, Casters};
 use crate::frame::{Frame, FrameUniform, light_from_world};
 use crate::passes::scan::ListLength;
 use crate::recorder::{Recorder, Work, dispatch};
-use crate::resource::{UniformArray, storage_buffer};
+use crate::resource::{Texture, UniformArray, storage_buffer};
 use crate::shader::ShaderKey;
 use crate::technique::Memory;
 use crate::{Error, Gpu, bindings, gpu_struct};
@@ -24,6 +24,8 @@ gpu_struct! {
 
 /// Bytes of a `LightTriangle` in `shaders/light_triangles.wesl`.
 const TRIANGLE_BYTES: u64 = 48;
+/// Triangles side by side in a row of texels.
+const TEXEL_ROW: u32 = 1024;
 /// Bytes of a `LightCluster`.
 const CLUSTER_BYTES: u64 = 32;
 
@@ -36,10 +38,19 @@ pub struct Part {
     pub masked: Option<usize>,
 }
 
+impl Part {
+    /// Clusters in it.
+    pub fn cluster_count(&self) -> u32 {
+        self.clusters.iter().map(|(_, _, count)| count).sum()
+    }
+}
+
 /// Triangles in light space.
 pub struct LightTriangles {
-    /// `LightTriangle`, see `shaders/light_triangles.wesl`.
+    /// `LightTriangle`, see `shaders/light_triangles.wesl`, where only the light's centre counts.
     pub buffer: wgpu::Buffer,
+    /// The same as texels, where the whole light counts; see `shaders/triangle_texels.wesl`.
+    pub texels: Texture,
     /// How many.
     pub length: ListLength,
     /// `LightCluster`, where the whole light counts: which triangles lie side by side, and where.
@@ -88,17 +99,22 @@ impl LightTriangles {
     /// Room for the largest of these parts.
     pub fn new(gpu: &Gpu, parts: &[Part], reach: Reach) -> LightTriangles {
         let capacity = LightTriangles::capacity_for(parts);
+        let (listed, drawn) = match reach {
+            Reach::Center => (capacity, 0),
+            Reach::Light => (0, capacity),
+        };
         LightTriangles {
-            buffer: storage_buffer(gpu, "light triangles", u64::from(capacity) * TRIANGLE_BYTES),
-            length: ListLength::unknown(gpu, "number of light triangles"),
-            clusters: storage_buffer(
+            buffer: storage_buffer(gpu, "light triangles", u64::from(listed) * TRIANGLE_BYTES),
+            texels: Texture::new(
                 gpu,
-                "light clusters",
-                match reach {
-                    Reach::Center => 0,
-                    Reach::Light => u64::from(capacity / CLUSTER_TRIANGLES) * CLUSTER_BYTES,
-                },
+                "light triangles",
+                [4 * TEXEL_ROW, drawn.div_ceil(TEXEL_ROW).max(1)],
+                1,
+                wgpu::TextureFormat::Rgba32Float,
+                wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
             ),
+            length: ListLength::unknown(gpu, "number of light triangles"),
+            clusters: storage_buffer(gpu, "light clusters", u64::from(drawn / CLUSTER_TRIANGLES) * CLUSTER_BYTES),
             cluster_length: ListLength::unknown(gpu, "number of light clusters"),
             reach,
             capacity,
@@ -107,7 +123,7 @@ impl LightTriangles {
 
     /// Triangles of the largest of these parts, whole clusters counted.
     pub fn capacity_for(parts: &[Part]) -> u32 {
-        let clusters = parts.iter().map(|p| p.clusters.iter().map(|(_, _, n)| n).sum::<u32>()).max();
+        let clusters = parts.iter().map(Part::cluster_count).max();
         clusters.unwrap_or(0).max(1) * CLUSTER_TRIANGLES
     }
 
@@ -122,7 +138,8 @@ impl LightTriangles {
             .with::<FrameUniform>()
             .with::<BatchLayout>()
             .with::<GatherUniform>()
-            .feature("clusters", self.reach == Reach::Light);
+            .feature("clusters", self.reach == Reach::Light)
+            .feature("masked", self.reach == Reach::Light && part.masked.is_some());
         let gather = recorder.gpu.compute_pipeline(&key, "gather_triangles")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
         let half_light = match self.reach {
@@ -149,6 +166,7 @@ impl LightTriangles {
                     boxes: &frame.casters.cluster_bounds,
                     gathered: &self.buffer,
                     gathered_length: &self.length.0,
+                    gathered_texels: &self.texels,
                     gathered_clusters: &self.clusters,
                     cluster_length: &self.cluster_length.0,
                 });
@@ -169,6 +187,6 @@ impl LightTriangles {
 
     /// GPU memory by pass.
     pub fn memory(&self) -> Memory {
-        Memory::new("light triangles", self.buffer.size() + self.clusters.size())
+        Memory::new("light triangles", self.buffer.size() + self.texels.bytes() + self.clusters.size())
     }
 }

@@ -16,6 +16,7 @@ mod ray_to_center;
 mod smooth_kernel;
 mod summed_area;
 
+use crate::pipeline::Binding;
 use crate::shader::ShaderKey;
 use crate::testing::{Random, computed, gpu};
 
@@ -33,18 +34,33 @@ fn evaluate_variant(
     stride: usize,
     outputs: usize,
 ) -> Vec<Vec<f32>> {
+    let key = ShaderKey { features: features.to_vec(), ..ShaderKey::new("host") };
+    evaluate_on(key, ("f32", text), input, stride, outputs, &[])
+}
+
+/// [`evaluate`] of a text in a shader that has more structs, features or bindings, and writes words of the named kind.
+pub(crate) fn evaluate_on<T: bytemuck::Pod>(
+    key: ShaderKey,
+    (kind, text): (&str, &str),
+    input: &[f32],
+    stride: usize,
+    outputs: usize,
+    more: &[Binding],
+) -> Vec<Vec<T>> {
     let count = input.len() / stride;
     let kernel = format!(
         "{text}
         @group(0) @binding(30) var<storage, read> input: array<f32>;
-        @group(0) @binding(31) var<storage, read_write> output: array<f32>;
+        @group(0) @binding(31) var<storage, read_write> output: array<{kind}>;
         @compute @workgroup_size(64) fn each(@builtin(global_invocation_id) id: vec3<u32>) {{
             if id.x < {count}u {{ evaluate(id.x * {stride}u, id.x * {outputs}u); }}
-        }}"
+        }}
+        {}",
+        key.structs
     );
-    let key = ShaderKey { structs: kernel, features: features.to_vec(), ..ShaderKey::new("host") };
-    let words: Vec<f32> = computed(&key, input, &[], count as u32, (count * outputs * 4) as u64);
-    words.chunks_exact(outputs).take(count).map(<[f32]>::to_vec).collect()
+    let key = ShaderKey { structs: kernel, ..key };
+    let words: Vec<T> = computed(&key, input, more, count as u32, (count * outputs * 4) as u64);
+    words.chunks_exact(outputs).take(count).map(<[T]>::to_vec).collect()
 }
 
 /// The largest error and what made it, for a message.

@@ -5,7 +5,10 @@
 
 use glam::{DMat2, DVec2};
 
-/// Most rows of a lattice of 256 points.
+/// Most points of a lattice: near what the mask holds, and few enough to be looked up for a whole cluster in as many rounds
+/// as llvmpipe gives a thread.
+pub(crate) const MOST_POINTS: u32 = 480;
+/// Most rows, and most points of a row, which are the bits of a word.
 pub(crate) const MOST_ROWS: usize = 32;
 
 /// A lattice of `points` points in the square.
@@ -23,11 +26,13 @@ pub(crate) struct Placed {
 }
 
 impl Lattice {
-    /// The lattice i (1, g) / points, modulo 1, whose shortest vector is longest.
+    /// The lattice i (1, g) / points, modulo 1, whose shortest vector is longest among those that fit the mask.
     pub fn new(points: u32) -> Lattice {
-        let bases = (1..points).filter(|g| coprime(*g, points)).map(|g| reduced(points, g));
-        let longest = bases.max_by(|a, b| a.x_axis.length_squared().total_cmp(&b.x_axis.length_squared()));
-        Lattice { basis: longest.expect("at least two points") }
+        let bases = (1..points.max(2)).filter(|g| coprime(*g, points)).map(|g| reduced(points, g));
+        let turned = bases.flat_map(|b| [b, DMat2::from_cols(b.y_axis, b.x_axis)]).filter(fits);
+        let shortest = |b: &DMat2| b.x_axis.length_squared().min(b.y_axis.length_squared());
+        let longest = turned.reduce(|best, b| if shortest(&b) > shortest(&best) { b } else { best });
+        Lattice { basis: longest.expect("at least two points, at most MOST_POINTS") }
     }
 
     /// The lattice moved by a part of the square's side, its first point in the square having the smallest coordinates.
@@ -44,6 +49,13 @@ impl Lattice {
         let row = |j| (0..=size.x.min(31)).filter(|&i| inside(i, j)).fold(0, |bits, i| bits | 1u32 << i);
         Placed { origin, rows: (0..=size.y).map(row).collect() }
     }
+}
+
+/// True if it has no more rows than the mask wherever it lies, nor longer ones.
+fn fits(basis: &DMat2) -> bool {
+    let inverse = basis.inverse();
+    let extent = inverse.x_axis.abs() + inverse.y_axis.abs();
+    (extent + 1e-9).floor().max_element() < MOST_ROWS as f64
 }
 
 /// Every point has an x and a y of its own if these have no factor in common.
@@ -77,9 +89,9 @@ mod tests {
 
     #[test]
     fn every_place_of_a_lattice_has_all_points_in_the_square_and_no_two_in_a_line_with_its_edges() {
-        for points in [2, 6, 32, 37, 64, 100, 128, 255, 256] {
+        for points in (2..MOST_POINTS).step_by(7).chain([37, 64, 128, 255, 256, MOST_POINTS]) {
             let lattice = Lattice::new(points);
-            for k in 0..40 {
+            for k in 0..16 {
                 let by = (DVec2::new(0.754_877_666, 0.569_840_296) * f64::from(k) + 0.5 / f64::from(points)).fract();
                 let placed = lattice.placed(by);
                 assert!(placed.rows.len() <= MOST_ROWS, "{} rows", placed.rows.len());

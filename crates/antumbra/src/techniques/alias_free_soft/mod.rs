@@ -9,14 +9,16 @@ use crate::casters::BatchLayout;
 use crate::frame::FrameUniform;
 use crate::passes::light_triangles::{LightTriangles, Reach};
 use crate::recorder::{Recorder, Work, dispatch};
-use crate::resource::{UniformArray, buffer_of, storage_buffer, uniform};
+use crate::resource::{UniformArray, buffer_of, uniform};
 use crate::shader::{HostStruct, ShaderKey};
 use crate::technique::{About, Describe, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
 use glam::{DVec2, Vec2, Vec4};
-use lattice::{Lattice, MOST_ROWS};
+use lattice::{Lattice, MOST_POINTS, MOST_ROWS};
+use rounds::{Between, Rounds};
 
 pub(crate) mod lattice;
+mod rounds;
 
 crate::choices! {
     /// Whether all pixels look at the same points.
@@ -32,7 +34,7 @@ crate::settings! {
     /// Settings of [`AliasFreeSoft`].
     pub struct AliasFreeSoftSettings {
         /// Points of the light.
-        samples: u32 = 256, Kind::Integer { min: 2, max: 256 };
+        samples: u32 = 256, Kind::Integer { min: 2, max: MOST_POINTS };
         /// The same points for all pixels, or moved and mirrored from pixel to pixel.
         points: Points = Points::Same, Kind::Choice { options: Points::OPTIONS };
     }
@@ -47,10 +49,14 @@ gpu_struct! {
 }
 
 gpu_struct! {
-    /// Which part of the triangles is looked at.
-    pub(crate) struct TrianglePart {
+    /// Which part of the triangles is looked at, and how.
+    pub(crate) struct TriangleLook {
         part: u32,
         parts: u32,
+        /// Whether a look at it went before, which a tile may have left before its end.
+        look: u32,
+        /// After so many rounds of its loops a tile stops.
+        rounds: u32,
         /// Places of the lattice among which pixels choose.
         placements: u32,
     }
@@ -59,8 +65,7 @@ gpu_struct! {
 /// Places of the lattice that pixels take where each has its own.
 const PLACEMENTS: u32 = 16;
 
-/// Triangles that are looked at in one go. A tile may meet them all, and no thread may go round longer than a driver
-/// bears: a GPU that hangs is reset after seconds, and llvmpipe ends a thread's loops after 65 535 rounds, wherever they are.
+/// Triangles that are gathered at once, and looked at before others are.
 const MOST_TRIANGLES: u32 = 1 << 15;
 
 /// The narrowest light that has points, as a part of the distance to the nearest surface: a penumbra far below a pixel.
@@ -74,8 +79,9 @@ pub struct AliasFreeSoft {
     placements: wgpu::Buffer,
     rows: wgpu::Buffer,
     triangles: Option<LightTriangles>,
-    /// Hidden points of each pixel, where triangles are looked at in several parts.
-    masks: Option<wgpu::Buffer>,
+    /// What lies between several looks.
+    between: Option<Between>,
+    looks: Option<UniformArray<TriangleLook>>,
 }
 
 impl Describe for AliasFreeSoft {
@@ -110,7 +116,8 @@ impl Describe for AliasFreeSoft {
             lattice,
             settings,
             triangles: None,
-            masks: None,
+            between: None,
+            looks: None,
         })
     }
 }
@@ -129,45 +136,59 @@ impl AliasFreeSoft {
 impl Technique for AliasFreeSoft {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         let gpu = recorder.gpu;
-        let [width, height] = frame.geometry.size;
         let parts = LightTriangles::parts(&frame.casters, MOST_TRIANGLES);
         if self.triangles.as_ref().is_none_or(|t| t.capacity() != LightTriangles::capacity_for(&parts)) {
             self.triangles = None; // Frees the old ones before the new ones are made.
             self.triangles = Some(LightTriangles::new(gpu, &parts, Reach::Light));
         }
         let triangles = self.triangles.as_ref().expect("just made");
-        let bytes = u64::from(width) * u64::from(height) * MOST_ROWS as u64 * 4;
-        if parts.len() > 1 && self.masks.as_ref().is_none_or(|m| m.size() != bytes) {
-            self.masks = Some(storage_buffer(gpu, "hidden points", bytes));
-        }
         gpu.queue.write_buffer(&self.uniform, 0, &self.lattice_uniform(frame).uniform_bytes());
-        let count = parts.len() as u32;
         let placements = if self.settings.points == Points::Moved { PLACEMENTS } else { 1 };
-        let uniforms: Vec<_> = (0..count).map(|part| TrianglePart { part, parts: count, placements }).collect();
-        let uniforms = UniformArray::new(gpu, "parts", &uniforms);
-        for (i, part) in parts.iter().enumerate() {
-            triangles.record(recorder, frame, part)?;
+        let (count, samples) = (parts.len() as u32, self.settings.samples);
+        let looks: Vec<TriangleLook> = (0..count)
+            .zip(&parts)
+            .flat_map(|(part, triangles)| {
+                let Rounds { most, looks } = Rounds::of(gpu, triangles, samples);
+                (0..looks).map(move |look| TriangleLook { part, parts: count, look, rounds: most, placements })
+            })
+            .collect();
+        let uniforms = UniformArray::ensure(&mut self.looks, gpu, "looks", &looks);
+        let between = Between::ensure(&mut self.between, gpu, frame.geometry.size, &looks);
+        for (i, look) in looks.iter().enumerate() {
+            let part = &parts[look.part as usize];
+            if look.look == 0 {
+                triangles.record(recorder, frame, part)?;
+            }
             let batch = part.masked.map(|index| &frame.casters.batches[index]);
             let key = ShaderKey::new("techniques::alias_free_soft::soften")
                 .feature("masked", batch.is_some())
-                .feature("parts", parts.len() > 1)
+                .feature("parts", between.is_some())
                 .with::<FrameUniform>()
                 .with::<BatchLayout>()
                 .with::<LatticeUniform>()
-                .with::<TrianglePart>();
+                .with::<TriangleLook>();
             let soften = gpu.compute_pipeline(&key, "soften")?;
             let soft = uniforms.at(i as u32);
             let mut set = frame.bindings(bindings! {
                 lattice: &self.uniform,
                 placements: &self.placements,
                 lattice_points: &self.rows,
-                triangles: &triangles.buffer,
+                triangles: &triangles.texels,
                 clusters: &triangles.clusters,
                 cluster_length: &triangles.cluster_length.0,
                 soft: &soft,
             });
-            if let Some(masks) = &self.masks {
-                set.extend_from_slice(bindings! { masks: masks });
+            let mut work = Work::Groups([frame.geometry.size[0].div_ceil(8), frame.geometry.size[1].div_ceil(8), 1]);
+            if let Some(between) = between {
+                let next = between.next_look(recorder, look.look);
+                set.extend_from_slice(bindings! {
+                    masks: &between.masks,
+                    stopped_at: &between.stopped_at,
+                    next_look: next,
+                });
+                if look.look > 0 {
+                    work = between.work(look.look);
+                }
             }
             recorder.compute_pass("visibility", |gpu, pass| {
                 pass.set_pipeline(&soften.pipeline);
@@ -175,15 +196,15 @@ impl Technique for AliasFreeSoft {
                 if let Some(batch) = batch {
                     pass.set_bind_group(1, &soften.bind_group(gpu, 1, &batch.bindings(&frame.casters)), &[]);
                 }
-                dispatch(pass, &soften, Work::Groups([width.div_ceil(8), height.div_ceil(8), 1]));
+                dispatch(pass, &soften, work);
             });
         }
         Ok(())
     }
 
     fn memory(&self) -> Vec<Memory> {
-        let masks = self.masks.as_ref().map_or(0, |m| m.size());
-        let own = Memory::new("visibility", masks + self.rows.size() + self.placements.size());
+        let between = self.between.as_ref().map_or(0, Between::bytes);
+        let own = Memory::new("visibility", between + self.rows.size() + self.placements.size());
         self.triangles.iter().map(LightTriangles::memory).chain([own]).collect()
     }
 }

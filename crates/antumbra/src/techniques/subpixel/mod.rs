@@ -42,8 +42,8 @@ gpu_struct! {
     }
 }
 
-/// Bytes of a `StoredFacet` in `facet.wesl`.
-const FACET_BYTES: u64 = 32;
+/// Facets side by side in a row of texels, two a facet; see `facet.wesl`.
+const FACET_ROW: u32 = 2048;
 
 /// Standard deviation of the Gaussian, in pixels.
 const GAUSSIAN_WIDTH: f64 = 0.5;
@@ -56,8 +56,8 @@ pub struct Subpixel {
     resolve: Arc<ComputePipeline>,
     sampling: wgpu::Buffer,
     half_planes: Texture,
-    /// Where the samples lie, `vec2<f32>` each, for surfaces with holes.
-    places: wgpu::Buffer,
+    /// Where the samples lie, for surfaces with holes.
+    places: Texture,
     /// What the Gaussian gives each sample of the 3 x 3 pixels around.
     weights: wgpu::Buffer,
     counters: Counters,
@@ -67,6 +67,7 @@ pub struct Subpixel {
     room: Room,
     lists: Option<TexelLists>,
     pairs: Option<TrianglePairs>,
+    strips: Option<UniformArray<StripUniform>>,
 }
 
 /// What is counted for reports.
@@ -78,18 +79,25 @@ struct Counters {
 /// What is kept of each pixel.
 struct Pixels {
     size: [u32; 2],
-    facets: wgpu::Buffer,
+    facets: Texture,
     masks: wgpu::Buffer,
 }
 
 impl Pixels {
     fn ensure<'a>(slot: &'a mut Option<Pixels>, gpu: &Gpu, size: [u32; 2], words: usize) -> &'a Pixels {
         if slot.as_ref().is_none_or(|p| p.size != size) {
-            let count = u64::from(size[0]) * u64::from(size[1]);
+            let count = size[0] * size[1];
             *slot = Some(Pixels {
                 size,
-                facets: storage_buffer(gpu, "facets", count * FACET_BYTES),
-                masks: storage_buffer(gpu, "masks of samples", count * words as u64 * 8),
+                facets: Texture::new(
+                    gpu,
+                    "facets",
+                    [2 * FACET_ROW, count.div_ceil(FACET_ROW)],
+                    1,
+                    wgpu::TextureFormat::Rgba32Float,
+                    wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING,
+                ),
+                masks: storage_buffer(gpu, "masks of samples", u64::from(count) * words as u64 * 8),
             });
         }
         slot.as_ref().expect("just made")
@@ -121,7 +129,7 @@ impl Describe for Subpixel {
             resolve: gpu.compute_pipeline(&resolve, "resolve")?,
             sampling: uniform(gpu, "sampling", &SamplingUniform { samples }),
             half_planes: half_planes::table(gpu, &pattern),
-            places: buffer_of(gpu, "samples", bytemuck::cast_slice(&places), storage),
+            places: place_texels(gpu, &places),
             weights: buffer_of(gpu, "weights", bytemuck::cast_slice(&gaussian(&pattern)), storage),
             counters: Counters {
                 evaluations: storage_buffer(gpu, "visibility evaluations", 16),
@@ -135,6 +143,7 @@ impl Describe for Subpixel {
             pixels: None,
             lists: None,
             pairs: None,
+            strips: None,
         })
     }
 }
@@ -145,6 +154,17 @@ pub(crate) fn key_for(key: ShaderKey, pattern: &Pattern) -> ShaderKey {
         .feature("four_words", pattern.words() == 4)
         .with::<SamplingUniform>()
         .with::<StripUniform>()
+}
+
+/// Where the samples lie, a texel each.
+fn place_texels(gpu: &Gpu, places: &[[f32; 2]]) -> Texture {
+    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+    let size = [places.len() as u32, 1];
+    let texture = Texture::new(gpu, "samples", size, 1, wgpu::TextureFormat::Rg32Float, usage);
+    let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: None, rows_per_image: None };
+    let extent = texture.texture.size();
+    gpu.queue.write_texture(texture.texture.as_image_copy(), bytemuck::cast_slice(places), layout, extent);
+    texture
 }
 
 /// The weight of each sample of the 3 x 3 pixels around the middle one; 32 to a word of their masks.
@@ -188,7 +208,7 @@ impl Technique for Subpixel {
             recorder.encoder.clear_buffer(&self.counters.evaluations, 0, None);
             recorder.encoder.clear_buffer(&self.counters.pixels, 0, None);
         }
-        let strips = UniformArray::new(gpu, "strips", &plan.strips);
+        let strips = UniformArray::ensure(&mut self.strips, gpu, "strips", &plan.strips);
         let parts = TrianglePairs::parts(frame, lists);
         let pairs = TrianglePairs::ensure(&mut self.pairs, gpu, &parts, self.room.pair_bytes());
         for i in 0..plan.strips.len() as u32 {
@@ -213,9 +233,9 @@ impl Technique for Subpixel {
     }
 
     fn memory(&self) -> Vec<Memory> {
-        let own = [&self.places, &self.weights, &self.sampling, &self.counters.evaluations, &self.counters.pixels];
-        let tables = own.iter().map(|b| b.size()).sum::<u64>() + self.half_planes.bytes();
-        let pixels = self.pixels.iter().map(|p| Memory::new("facets", p.facets.size() + p.masks.size()));
+        let own = [&self.weights, &self.sampling, &self.counters.evaluations, &self.counters.pixels];
+        let tables = own.iter().map(|b| b.size()).sum::<u64>() + self.places.bytes() + self.half_planes.bytes();
+        let pixels = self.pixels.iter().map(|p| Memory::new("facets", p.facets.bytes() + p.masks.size()));
         self.map
             .iter()
             .flat_map(DepthMap::memory)

@@ -7,23 +7,13 @@ mod silhouettes;
 use super::half_planes::{self, Samples, table};
 use super::pattern::{Arrangement, Pattern};
 use super::{SamplingUniform, key_for};
+use crate::bindings;
 use crate::frame::FrameUniform;
-use crate::recorder::Work;
-use crate::resource::{buffer_of, read_buffer, storage_buffer, uniform};
-use crate::shader::{HostStruct, ShaderKey};
-use crate::{AdapterChoice, Gpu, Recorder, bindings};
+use crate::resource::uniform;
+use crate::shader::ShaderKey;
+use crate::shader::twins::evaluate_on;
+use crate::testing::gpu;
 use glam::{DVec2, DVec3, UVec4, Vec3};
-use pollster::block_on;
-use std::sync::OnceLock;
-
-fn gpu() -> &'static Gpu {
-    static GPU: OnceLock<Gpu> = OnceLock::new();
-    GPU.get_or_init(|| {
-        block_on(Gpu::new(&AdapterChoice::Best)).unwrap_or_else(|e| {
-            panic!("{e}\nThis test needs a GPU or a software one: `cargo xtask test` installs one.")
-        })
-    })
-}
 
 /// Reproducible numbers.
 struct Random(u64);
@@ -42,39 +32,28 @@ impl Random {
 
 /// Runs `fn masks(at: u32) -> array<Samples, 2>` of a WESL text for every input of `stride` numbers.
 fn masks_on_gpu(pattern: &Pattern, text: &str, input: &[f32], stride: usize) -> Vec<[Samples; 2]> {
-    let (gpu, count) = (gpu(), input.len() / stride);
-    let kernel = format!(
+    let gpu = gpu();
+    let text = format!(
         "import package::techniques::subpixel::samples::{{Samples, WORDS, word, samples_within}};
         {text}
-        @group(0) @binding(30) var<storage, read> input: array<f32>;
-        @group(0) @binding(31) var<storage, read_write> output: array<u32>;
         fn vector(at: u32) -> vec3<f32> {{ return vec3(input[at], input[at + 1u], input[at + 2u]); }}
-        @compute @workgroup_size(64) fn each(@builtin(global_invocation_id) id: vec3<u32>) {{
-            if id.x >= {count}u {{ return; }}
-            var found = masks(id.x * {stride}u);
+        fn evaluate(at: u32, to: u32) {{
+            var found = masks(at);
             for (var k = 0u; k < WORDS; k++) {{
-                output[id.x * 8u + k] = word(found[0], k);
-                output[id.x * 8u + 4u + k] = word(found[1], k);
+                output[to + k] = word(found[0], k);
+                output[to + 4u + k] = word(found[1], k);
             }}
-        }}
-        {}",
-        FrameUniform::wgsl()
+        }}"
     );
-    let key = key_for(ShaderKey { structs: kernel, ..ShaderKey::new("host") }, pattern);
-    let pipeline = gpu.compute_pipeline(&key, "each").unwrap_or_else(|e| panic!("{e}"));
+    let key = key_for(ShaderKey::new("host"), pattern).with::<FrameUniform>();
     let all = half_planes::all(pattern);
     let samples = UVec4::from([0, 1, 2, 3].map(|k| (all >> (32 * k)) as u32));
     let sampling = uniform(gpu, "sampling", &SamplingUniform { samples });
     let planes = table(gpu, pattern);
-    let source = buffer_of(gpu, "input", bytemuck::cast_slice(input), wgpu::BufferUsages::STORAGE);
-    let target = storage_buffer(gpu, "output", count as u64 * 32);
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let set = bindings! { input: &source, output: &target, sampling: &sampling, half_planes: &planes };
-    Recorder::new(gpu, &mut encoder).compute("masks", &pipeline, set, Work::Threads([count as u32, 1, 1]));
-    gpu.queue.submit([encoder.finish()]);
-    let words: Vec<u32> = bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, &target)).expect("reads"));
+    let more = bindings! { sampling: &sampling, half_planes: &planes };
     let mask = |w: &[u32]| w.iter().rev().fold(0, |bits, word| bits << 32 | Samples::from(*word));
-    words.chunks_exact(8).take(count).map(|w| [mask(&w[..4]), mask(&w[4..])]).collect()
+    let words: Vec<Vec<u32>> = evaluate_on(key, ("u32", &text), input, stride, 8, more);
+    words.iter().map(|w| [mask(&w[..4]), mask(&w[4..])]).collect()
 }
 
 /// How far a line may be moved by its entry in the table, in the unit of |h.x| + |h.y|, at a sample.

@@ -1,12 +1,14 @@
 //! Silhouette edges and the texels that they pass.
 
 use super::*;
-use crate::Frame;
 use crate::passes::depth_map::DepthMap;
 use crate::passes::silhouette::{Marking, SilhouetteMask};
+use crate::resource::read_buffer;
 use crate::scene::SceneRenderer;
+use crate::{Frame, Recorder};
 use antumbra_scene::{Camera, Instance, Material, Mesh, RectLight, Scene};
 use glam::{Affine3A, Vec2};
+use pollster::block_on;
 
 /// A light 5 metres over the ground that looks straight down, and meshes below it.
 fn scene(meshes: Vec<Mesh>) -> Scene {
