@@ -34,7 +34,7 @@ crate::settings! {
     /// Settings of [`AliasFreeSoft`].
     pub struct AliasFreeSoftSettings {
         /// Points of the light.
-        samples: u32 = 256, Kind::Integer { min: 2, max: MOST_POINTS };
+        samples: u32 = 400, Kind::Integer { min: 2, max: MOST_POINTS };
         /// The same points for all pixels, or moved and mirrored from pixel to pixel.
         points: Points = Points::Same, Kind::Choice { options: Points::OPTIONS };
     }
