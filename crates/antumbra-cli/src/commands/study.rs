@@ -24,7 +24,7 @@ fn run_rho(args: &RhoArgs) -> Result<(), CliError> {
         title: "Texels that a penumbra needs",
         source: "Shen 2011",
         adapter: "the CPU, in double precision".to_owned(),
-        software: true,
+        software: false,
         command: setup::command_line(),
         frames: 1,
     };

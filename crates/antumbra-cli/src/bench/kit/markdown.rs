@@ -7,12 +7,13 @@ use crate::table;
 pub fn document(context: &Context, findings: &Findings) -> String {
     let Context { suite, title, source, adapter, command, .. } = context;
     let software = if context.software { ", a software adapter: its milliseconds say nothing about a GPU" } else { "" };
+    let clock = match findings.trials.is_empty() {
+        true => String::new(),
+        false => format!(" Milliseconds: {}, {}.", findings.clock(), context.counted()),
+    };
     let mut text = format!(
-        "## {title} [{source}]\n\nMeasured on {}{software}. Milliseconds: {}, {}. Made by\n\n    \
-         {command}\n\n{}\n",
+        "## {title} [{source}]\n\nMeasured on {}{software}.{clock} Made by\n\n    {command}\n\n{}\n",
         escaped(adapter),
-        findings.clock(),
-        context.counted(),
         findings.lead
     );
     for part in &findings.parts {

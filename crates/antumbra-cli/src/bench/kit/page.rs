@@ -55,8 +55,11 @@ fn header(context: &Context, findings: &Findings) -> Markup {
         dl.facts {
             div { dt { "Paper" } dd { (context.source) } }
             (frame::adapter(&context.adapter, context.software))
-            div { dt { "Milliseconds" } dd { (findings.clock()) } }
-            div { dt { "Frames" } dd { (context.counted()) } }
+            // A study times nothing.
+            @if !findings.trials.is_empty() {
+                div { dt { "Milliseconds" } dd { (findings.clock()) } }
+                div { dt { "Frames" } dd { (context.counted()) } }
+            }
         }
         (frame::command(&context.command))
         @if context.software { (frame::software_notice()) }

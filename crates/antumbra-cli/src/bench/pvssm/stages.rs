@@ -21,7 +21,7 @@ const STAGES: [Stage; 6] = [
     },
     Stage { name: "average depth", passes: &["pixel classification", "kernel shapes"], paper: [4.5, 9.0] },
     Stage { name: "grid and tiling", passes: &["tile grid", "tile decision", "pixel bins"], paper: [10.5, 10.5] },
-    Stage { name: "tiles", passes: &["tile culling", "tiles"], paper: [55.8, 91.0] },
+    Stage { name: "tiles", passes: &["tile culling", "tiles", "tile pyramid"], paper: [55.8, 91.0] },
     Stage { name: "filter", passes: &["filter"], paper: [82.5, 2.4] },
 ];
 
