@@ -51,10 +51,18 @@ pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &
         {
             reset(desk);
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            ui.toggle_value(&mut desk.help, "Help");
+        // On the right, or in the next row where there is no room for both.
+        if ui.available_size_before_wrap().x > LAST {
+            let layout = egui::Layout::right_to_left(egui::Align::Center);
+            ui.with_layout(layout, |ui| {
+                ui.toggle_value(&mut desk.help, "Help");
+                ui.menu_button("Save", |ui| saves(ui, desk, wishes));
+            });
+        } else {
+            ui.end_row();
             ui.menu_button("Save", |ui| saves(ui, desk, wishes));
-        });
+            ui.toggle_value(&mut desk.help, "Help");
+        }
     });
 }
 
