@@ -8,6 +8,9 @@ use crate::show::Show;
 use antumbra_scene::builtin;
 use eframe::egui::{self, RichText};
 
+/// Points that what stands on the right takes.
+const LAST: f32 = 110.0;
+
 /// The bar.
 pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &mut Memory, wishes: &mut Wishes) {
     egui::MenuBar::new().ui(ui, |ui| {
