@@ -131,7 +131,8 @@ fn slide(ui: &mut egui::Ui, value: f64, [min, max]: [f64; 2], whole: bool, id: (
         if max - min > 64.0 {
             slider = slider.logarithmic(true).smallest_positive(if whole { 1.0 } else { 0.01 });
         }
-        ui.add(if whole { slider.integer() } else { slider.max_decimals(3) })
+        // A slider rounds what it shows, so it must show all digits that defaults have.
+        ui.add(if whole { slider.integer() } else { slider.max_decimals(5) })
     })
 }
 
