@@ -109,7 +109,9 @@ fn parted(children: &[Patch; 4], middle: f64, flat_counts: f64) -> Patch {
     let tilted = fitted(mean - slope.dot(place / area(&near)), slope, &near);
     let flat = fitted(mean, DVec2::ZERO, &near);
     let best = if flat_counts * flat.half_range() < tilted.half_range() { flat } else { tilted };
+    let top = children.iter().map(Patch::top).fold(0.0, f64::max);
     Patch {
+        residual: best.residual + (top - best.top()).max(0.0),
         far: if far.is_empty() { 0.0 } else { mean_q(&far) },
         share: area(&near) / 4.0,
         far_share: area(&far) / 4.0,
