@@ -1,7 +1,7 @@
 //! Masks that one can tell by hand. The facet lies 4 metres below the light, which faces it; a pixel is 1 decimetre wide,
 //! and a column of the 8 x 4 samples an eighth of that.
 
-use super::blockers::{Seen, shadows};
+use super::blockers::{Seen, random_seen, shadows};
 use super::*;
 
 /// Seen from beside the light, straight down: x of the picture is x of space, y down is -y.
@@ -80,6 +80,62 @@ fn a_triangle_through_the_facet_ends_at_the_line_where_they_meet_and_makes_sampl
     let [hidden, invalid] = shadow(floor(), t);
     assert_eq!(hidden, picked(|s| s.x > -0.2), "hidden {hidden:032b}");
     assert_eq!(invalid, picked(|s| s.x < -0.2), "invalid {invalid:032b}");
+}
+
+#[test]
+fn only_what_is_seen_through_the_meeting_is_invalid() {
+    // The slope at x = 0.02 of above, cut at the pixel's middle: its half parts half of the pixel.
+    let [top, bottom] = [-90.0, 90.0].map(|y| [9.02, y, -5.0]);
+    let (foot, middle) = ([-8.98, 0.0, 13.0], [9.02, 0.0, -5.0]);
+    let beyond = |s: DVec2| s.x > 0.2;
+    let [hidden, invalid] = shadow(floor(), [middle, bottom, foot]);
+    assert_eq!(invalid, picked(|s| beyond(s) && s.y < 0.0), "invalid {invalid:032b}");
+    assert_eq!(hidden & !picked(beyond), 0, "hidden {hidden:032b}");
+    // The other half parts what is left, and nothing twice.
+    let [_, rest] = shadow(floor(), [top, middle, foot]);
+    assert_eq!((invalid & rest, invalid | rest), (0, picked(beyond)), "{invalid:032b} {rest:032b}");
+    // One that ends a pixel aside parts nothing, though its line passes.
+    let aside = [[9.02, 0.2, -5.0], bottom, [-8.98, 0.2, 13.0]];
+    assert_eq!(shadow(floor(), aside)[1], 0);
+}
+
+/// What the middle sees of a sample's place through a triangle, by the place's way from the middle.
+fn is_behind(seen: &Seen, [a, b, c]: [DVec3; 3], s: DVec2) -> Option<bool> {
+    let (from, to) = (seen.position, seen.place(s)?);
+    let n = (b - a).cross(c - a);
+    let (low, high) = (n.dot(from - a), n.dot(to - a));
+    let at = from + (to - from) * low / (low - high);
+    let inside = [(a, b), (b, c), (c, a)].map(|(u, v)| n.cross(v - u).normalize().dot(at - u));
+    // Beside an edge of the triangle or of the samples' halves either is right.
+    let by = inside.iter().fold(f64::INFINITY, |m, v| m.min(v.abs()));
+    let pixel = seen.across.length().max(seen.down.length());
+    let clear = by > 0.3 * pixel && low.abs().min(high.abs()) > 0.1 * pixel * n.length();
+    clear.then(|| low * high < 0.0 && inside.iter().all(|v| *v > 0.0))
+}
+
+#[test]
+fn a_sample_is_invalid_if_a_triangle_stands_between_it_and_the_middle() {
+    let pattern = Pattern::arranged(Arrangement::Rotated, 32);
+    let mut random = Random(31);
+    let cases: Vec<_> = (0..6000)
+        .map(|_| {
+            let seen = random_seen(&mut random);
+            let size = 2.0 * seen.across.length();
+            let corner = |random: &mut Random| seen.position + random.point(DVec3::splat(-size), DVec3::splat(size));
+            (seen, [corner(&mut random), corner(&mut random), corner(&mut random)])
+        })
+        .collect();
+    let (mut looked, mut behind, mut wrong) = (0, 0, 0);
+    for ((seen, t), [_, invalid]) in cases.iter().zip(shadows(&pattern, &cases)) {
+        for (i, s) in pattern.samples().iter().enumerate().skip(1) {
+            let Some(is_behind) = is_behind(seen, *t, *s) else { continue };
+            looked += 1;
+            behind += u32::from(is_behind);
+            wrong += u32::from(is_behind != (invalid >> i & 1 != 0));
+        }
+    }
+    println!("{wrong} of {looked} wrong, {behind} behind a triangle");
+    assert!(wrong * 1000 < looked && behind > looked / 100, "{wrong} of {looked} wrong, {behind} behind a triangle");
 }
 
 #[test]
