@@ -125,8 +125,8 @@ fn invalid_samples_are_those_that_would_darken_a_bumpy_receiver() {
 
 #[test]
 fn the_map_only_groups_the_work() {
-    // In `atrium` a map of 128 is too coarse for the depth test; docs/subpixel.md has the figures.
-    for (name, most_mean, most_pixels) in [("fence", 1e-3, 0.005), ("atrium", 0.02, 0.025)] {
+    // In `atrium` walls that the light would see at a grazing angle lie in the shadow of a roof far above.
+    for (name, most_mean, most_pixels) in [("fence", 1e-4, 0.001), ("atrium", 2e-3, 0.003)] {
         let scene = under_point(name);
         let [coarse, fine] = [128, 1024].map(|map| drawn_by(&scene, &format!("subpixel:map={map}")).visibility);
         let off: Vec<f64> = coarse.iter().zip(&fine).map(|(a, b)| f64::from((a - b).abs())).collect();
