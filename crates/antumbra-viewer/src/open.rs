@@ -20,6 +20,12 @@ pub enum Source {
     Again(Open),
 }
 
+/// What a scene can be in.
+pub const EXTENSIONS: [&str; 6] = ["glb", "gltf", "obj", "ply", "toml", "json"];
+
+/// What came of a file dialog: files, none where it was closed, or why there is no dialog.
+pub type Chosen = Result<Vec<egui::DroppedFileHandle>, String>;
+
 /// Loads a scene and puts it on the GPU.
 pub fn start(
     gpu: &Gpu,

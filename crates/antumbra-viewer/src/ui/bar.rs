@@ -14,7 +14,10 @@ const LAST: f32 = 110.0;
 /// The bar.
 pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &mut Memory, wishes: &mut Wishes) {
     egui::MenuBar::new().ui(ui, |ui| {
-        ui.menu_button("Scene", |ui| scenes(ui, desk, memory, wishes));
+        ui.menu_button("Scene ⏷", |ui| scenes(ui, desk, memory, wishes)).response.on_hover_text("Built-in scenes, or a file");
+        if ui.button("Open …").on_hover_text("A model or a scene file; or drop one on the picture").clicked() {
+            wishes.choose = true;
+        }
         if let Some(open) = &desk.open {
             let triangles = session.stage.as_ref().map_or(0, |s| s.triangles);
             let name = open.scene.name.trim_start_matches("builtin:");
@@ -22,6 +25,7 @@ pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &
             ui.weak(format!("{} triangles", thousands(triangles)));
         }
         ui.separator();
+        ui.weak("compare");
         for (value, text, help) in [
             (Compare::One, "One", "One technique on the whole picture (1)"),
             (Compare::Two, "Two side by side", "Two techniques; drag the line between them (2)"),
@@ -34,6 +38,7 @@ pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &
             ui.selectable_value(&mut desk.compare, value, text).on_hover_text(help);
         }
         ui.separator();
+        ui.weak("show");
         for (value, text, help) in [
             (Show::Picture, "Picture", "The shaded picture (P)"),
             (Show::Visibility, "Visibility", "The part of the light that each pixel sees: white all, black none (V)"),
@@ -59,11 +64,11 @@ pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &
             let layout = egui::Layout::right_to_left(egui::Align::Center);
             ui.with_layout(layout, |ui| {
                 ui.toggle_value(&mut desk.help, "Help");
-                ui.menu_button("Save", |ui| saves(ui, desk, wishes));
+                ui.menu_button("Save ⏷", |ui| saves(ui, desk, wishes));
             });
         } else {
             ui.end_row();
-            ui.menu_button("Save", |ui| saves(ui, desk, wishes));
+            ui.menu_button("Save ⏷", |ui| saves(ui, desk, wishes));
             ui.toggle_value(&mut desk.help, "Help");
         }
     });
