@@ -185,7 +185,11 @@ impl Session {
             return Ok(false);
         }
         if self.canvas.as_ref().is_none_or(|c| c.size != size) {
-            self.canvas = Some(Canvas::new(&self.gpu, stage, size)?);
+            let canvas = Canvas::new(&self.gpu, stage, size)?;
+            // Without a shadow until a technique is compiled: all would be dark.
+            let lit = vec![1.0; size[0] as usize * size[1] as usize];
+            canvas.halves.iter().for_each(|half| half.write_visibility(&self.gpu, &lit));
+            self.canvas = Some(canvas);
             self.resized += 1;
             self.truth_written = None;
         }
@@ -360,6 +364,10 @@ impl Half {
                     (self.made, self.failed) = (Some((of, technique)), None);
                     (self.looked_at, self.preparing) = (false, None);
                     self.times = Times::default();
+                    // What the one before has under way are no times of this one.
+                    if let Ok(timer) = Timer::new(gpu) {
+                        self.timer = timer;
+                    }
                 }
                 Ok(Err(error)) => self.failed = Some((of, error.to_string())),
                 Err(died) => self.failed = Some((of, died.to_string())),

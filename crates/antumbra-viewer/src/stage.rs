@@ -5,7 +5,7 @@ use crate::show::{Show, Shown};
 use antumbra::passes::{geometry_buffer::GeometryBuffer, picture::Picture};
 use antumbra::recorder::PassTime;
 use antumbra::resource::Texture;
-use antumbra::scene::Placed;
+use antumbra::scene::{Arranged, Placed};
 use antumbra::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Technique, Timer, View};
 use antumbra::{casters::Role, frame};
 use antumbra_scene::{Aabb, Instance, Scene};
@@ -32,8 +32,8 @@ pub struct Stage {
 
 impl Stage {
     /// Uploads a scene and compiles what every picture needs. Takes a while: not for the thread that draws.
-    pub fn new(gpu: &Gpu, scene: Arc<Scene>, pose: u64) -> Result<Stage, Error> {
-        let placed = Placed::upload(gpu, &scene)?;
+    pub fn new(gpu: &Gpu, scene: Arc<Scene>, arranged: Arranged, pose: u64) -> Result<Stage, Error> {
+        let placed = Placed::upload_arranged(gpu, &scene, arranged)?;
         let casters = Arc::new(placed.casters.clone());
         let stage = Stage {
             bounds: scene.bounds(),

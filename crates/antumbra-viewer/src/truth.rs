@@ -140,16 +140,35 @@ struct Work {
 pub struct Lazy {
     scene: Arc<Scene>,
     tracer: OnceLock<Tracer>,
+    /// True from when somebody began to build it.
+    begun: AtomicBool,
 }
 
 impl Lazy {
     /// The scene as it stands.
     pub fn new(scene: Arc<Scene>) -> Lazy {
-        Lazy { scene, tracer: OnceLock::new() }
+        Lazy { scene, tracer: OnceLock::new(), begun: AtomicBool::new(false) }
     }
 
-    fn get(&self) -> &Tracer {
-        self.tracer.get_or_init(|| Tracer::new(&self.scene))
+    /// The tree once it is built; none if it is given up because `is_wanted` says so.
+    async fn get(&self, slice: &mut Slice, is_wanted: impl Fn() -> bool) -> Option<&Tracer> {
+        if here::HAS_THREADS {
+            return Some(self.tracer.get_or_init(|| Tracer::new(&self.scene)));
+        }
+        while self.tracer.get().is_none() {
+            if !self.begun.swap(true, Ordering::Relaxed) {
+                let pause = &mut async || {
+                    slice.breathe().await;
+                    is_wanted()
+                };
+                let built = Tracer::with_pauses(&self.scene, pause).await;
+                self.begun.store(false, Ordering::Relaxed);
+                // Nobody else builds it meanwhile.
+                let _ = self.tracer.set(built?);
+            }
+            here::yield_to_frame().await;
+        }
+        self.tracer.get()
     }
 
     /// True once the tree is built.
@@ -228,7 +247,10 @@ impl Work {
         }
         let [light_samples, pixel_samples] = LEVELS[level];
         let settings = Settings { light_samples, pixel_samples, ..Settings::of_size(width, height) };
-        let view = View::new(self.tracer.get(), &self.question.camera, &self.question.light, &settings);
+        // The next truth of the same scene goes on with what this one has begun.
+        let is_wanted = || !self.is_cancelled() || Arc::strong_count(&self.tracer) > 1;
+        let Some(tracer) = self.tracer.get(slice, is_wanted).await else { return false };
+        let view = View::new(tracer, &self.question.camera, &self.question.light, &settings);
         let y = spread(next % height, height);
         let mut pixels = Vec::with_capacity(width as usize);
         for x in (0..width).step_by(RUN as usize) {

@@ -6,8 +6,8 @@ mod limits;
 mod long_work;
 mod touch;
 
-use crate::page::Page;
 use crate::Outcome;
+use crate::page::Page;
 use serde_json::Value;
 
 /// A check gives what was seen, or what was wrong with it.

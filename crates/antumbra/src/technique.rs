@@ -1,7 +1,7 @@
 //! What a technique is, and the one list of techniques.
 
-use crate::shader::Needs;
 use crate::settings::{Setting, Settings, SpecError, nearest, parse_values};
+use crate::shader::Needs;
 use crate::{Error, Frame, Gpu, recorder::Recorder, techniques::TECHNIQUES};
 use serde_json::{Map, Value};
 use std::pin::Pin;

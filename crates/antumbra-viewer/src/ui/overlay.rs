@@ -72,7 +72,7 @@ fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: us
     ui.set_max_width(280.0);
     let choice = &mut desk.choices[half];
     let name = RichText::new(choice.technique.name).strong().size(15.0).color(style::ON_PICTURE);
-    let button = egui::Button::new((name, RichText::new("⏷").size(15.0)));
+    let button = egui::Button::new((name, egui::containers::menu::SubMenuButton::arrow_atom(None)));
     let gpu = &session.gpu;
     let menu = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| panel::pick(ui, choice, gpu));
     menu.0.on_hover_text("Another technique");

@@ -98,7 +98,8 @@ pub fn screenshot(page: &mut Page) -> Outcome<String> {
     let png = downloaded(page, folder.path(), "window.png", json!({ "screenshot": "window.png" }))?;
     let side = |at: usize| png.get(at..at + 4).map_or(0, |b| u32::from_be_bytes([b[0], b[1], b[2], b[3]]));
     let (size, ends) = ([side(16), side(20)], png.ends_with(b"IEND\xaeB`\x82"));
-    let canvas = page.browser.value("[document.getElementById('viewer').width, document.getElementById('viewer').height]")?;
+    let canvas =
+        page.browser.value("[document.getElementById('viewer').width, document.getElementById('viewer').height]")?;
     match png.starts_with(b"\x89PNG\r\n\x1a\n") && ends && canvas == json!(size) {
         true => Ok(format!("window.png: {} x {} pixels, {} bytes", size[0], size[1], png.len())),
         false => Err(format!("window.png of {} bytes says {size:?}, the canvas is {canvas}", png.len())),

@@ -32,7 +32,12 @@ pub fn one_finger_turns(page: &mut Page) -> Outcome<String> {
     let [later, aim] = camera(&page.settled()?)?;
     page.shot("touch-turned")?;
     let away = [length(difference(eye, target)), length(difference(later, aim))];
-    let seen = format!("the eye went {:.2} m, {:.3} m and then {:.3} m from its target", length(difference(eye, later)), away[0], away[1]);
+    let seen = format!(
+        "the eye went {:.2} m, {:.3} m and then {:.3} m from its target",
+        length(difference(eye, later)),
+        away[0],
+        away[1]
+    );
     let is_round = (away[0] - away[1]).abs() < 1e-3 * away[0] && length(difference(target, aim)) < 1e-4;
     match is_round && length(difference(eye, later)) > 0.1 * away[0] {
         true => Ok(seen),
@@ -54,7 +59,9 @@ pub fn two_fingers_zoom(page: &mut Page) -> Outcome<String> {
     page.shot("touch-zoomed")?;
     fingers(page, &wide, &near)?;
     let together = distance(page)?;
-    let seen = format!("{first:.3} m from the target, {apart:.3} m after fingers went apart, {together:.3} m after they came together");
+    let seen = format!(
+        "{first:.3} m from the target, {apart:.3} m after fingers went apart, {together:.3} m after they came together"
+    );
     match apart < 0.7 * first && together > 1.4 * apart {
         true => Ok(seen),
         false => Err(seen),

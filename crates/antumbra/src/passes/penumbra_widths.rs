@@ -1,9 +1,9 @@
 //! How wide the penumbra is at each listed pixel. No visibility needs it: it is kept only while people look at it.
 
+use crate::Gpu;
 use crate::passes::classify::PenumbraList;
 use crate::resource::storage_buffer;
 use crate::technique::{InnerContent, InnerPicture, Memory};
-use crate::Gpu;
 
 /// Label and name.
 const WIDTHS: &str = "penumbra widths";

@@ -258,7 +258,8 @@ impl Technique for AliasFreeSoft {
     }
 
     fn memory(&self) -> Vec<Memory> {
-        let kept = self.between.as_ref().map_or(0, Between::bytes) + self.effort.as_ref().map_or(0, |e| e.numbers.size());
+        let kept =
+            self.between.as_ref().map_or(0, Between::bytes) + self.effort.as_ref().map_or(0, |e| e.numbers.size());
         let own = Memory::new("visibility", kept + self.rows.size() + self.placements.size());
         self.triangles.iter().map(LightTriangles::memory).chain([own]).collect()
     }
