@@ -5,7 +5,7 @@
 //! affine.
 
 use antumbra_scene::Scene;
-use antumbra_scene::slices::{RUN, at_once};
+use antumbra_scene::slices::RUN;
 use glam::{Vec2, Vec3, Vec4};
 
 /// Cells a side.
@@ -66,13 +66,13 @@ impl Cells {
     }
 }
 
-/// Calls with the world-space corners of every triangle and the place of its instance.
-pub(crate) fn for_each_world_triangle(scene: &Scene, call: impl FnMut([Vec3; 3], usize)) {
-    at_once(each_world_triangle(scene, call, &mut async || ()));
-}
-
-/// The same with a pause after every few thousand.
-async fn each_world_triangle(scene: &Scene, mut call: impl FnMut([Vec3; 3], usize), pause: &mut impl AsyncFnMut()) {
+/// Calls with the world-space corners of every triangle and the place of its instance, with a pause after every few
+/// thousand.
+pub(crate) async fn each_world_triangle(
+    scene: &Scene,
+    mut call: impl FnMut([Vec3; 3], usize),
+    pause: &mut impl AsyncFnMut(),
+) {
     let mut moved = Vec::new();
     for (place, instance) in scene.instances.iter().enumerate() {
         let mesh = &scene.meshes[instance.mesh];
@@ -87,12 +87,8 @@ async fn each_world_triangle(scene: &Scene, mut call: impl FnMut([Vec3; 3], usiz
     }
 }
 
-/// Calls with every triangle that lies in front of the light: three corners in light space, and its instance.
-pub(crate) fn for_each_triangle(scene: &Scene, call: impl FnMut([Vec3; 3], usize)) {
-    at_once(each_triangle(scene, call, &mut async || ()));
-}
-
-/// The same with a pause after every few thousand.
+/// Calls with every triangle that lies in front of the light: three corners in light space, and its instance; with a pause
+/// after every few thousand.
 pub(crate) async fn each_triangle(
     scene: &Scene,
     mut call: impl FnMut([Vec3; 3], usize),
