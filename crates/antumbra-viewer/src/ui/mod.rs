@@ -101,7 +101,9 @@ pub fn show(
     egui::CentralPanel::no_frame().show(ui, |ui| {
         picture::show(ui, render, desk, session, memory);
         if let Some(area) = memory.area {
-            overlay::show(ui, area, desk, session, &memory.known);
+            // Messages are where hints are.
+            let moving = memory.known.moving || !memory.notices.is_empty();
+            overlay::show(ui, area, desk, session, &Known { moving, ..memory.known });
         }
     });
     inside::show(ui.ctx(), render, desk, session, memory);
