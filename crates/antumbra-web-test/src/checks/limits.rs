@@ -19,7 +19,7 @@ pub fn refused(page: &mut Page) -> Outcome<String> {
     let refused = state?["refused"].clone();
     let names: Vec<&str> = refused.as_array().into_iter().flatten().filter_map(|r| r[0].as_str()).collect();
     let whys: Vec<&str> = refused.as_array().into_iter().flatten().filter_map(|r| r[1].as_str()).collect();
-    let seen = format!("{}", whys.join("; "));
+    let seen = whys.join("; ");
     if names.is_empty() || whys.iter().any(|w| !w.contains("this adapter gives")) {
         return Err(format!("with the least that WebGPU gives, these are refused: {refused}"));
     }
@@ -35,7 +35,7 @@ pub fn refused(page: &mut Page) -> Outcome<String> {
     }
     page.ask(&json!({ "technique": { "half": 0, "spec": "pcss:map=256" } }))?;
     let drawn = page.settled()?["drawn"][0].clone();
-    if drawn == Value::from("pcss:map=256") { Ok(seen) } else { Err(format!("{drawn} is drawn")) }
+    if drawn == "pcss:map=256" { Ok(seen) } else { Err(format!("{drawn} is drawn")) }
 }
 
 /// A picture of the list with the pointer on the first that is refused.
