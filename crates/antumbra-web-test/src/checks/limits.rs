@@ -3,7 +3,7 @@
 use super::QUERY;
 use crate::Outcome;
 use crate::page::Page;
-use serde_json::{Value, json};
+use serde_json::json;
 
 /// What a page sees of the adapter, and asks of the device, is no more than the standard's least.
 const LEAST: &str = "for (const [name, least] of [['maxStorageBuffersPerShaderStage', 8],
