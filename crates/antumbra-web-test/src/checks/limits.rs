@@ -46,10 +46,10 @@ fn menu(page: &mut Page) -> Outcome<()> {
         page.browser.call("Input.dispatchMouseEvent", event).map(|_| ())
     };
     for kind in ["mouseMoved", "mousePressed", "mouseReleased"] {
-        mouse(page, kind, [40.0, 50.0])?;
+        mouse(page, kind, [40.0, 74.0])?;
         std::thread::sleep(std::time::Duration::from_millis(200));
     }
-    mouse(page, "mouseMoved", [120.0, 455.0])?;
+    mouse(page, "mouseMoved", [120.0, 392.0])?;
     std::thread::sleep(std::time::Duration::from_millis(1500));
     page.shot("refused")?;
     let escape = json!({ "key": "Escape", "code": "Escape", "windowsVirtualKeyCode": 27 });
