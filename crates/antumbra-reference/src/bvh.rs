@@ -1,8 +1,8 @@
 //! The bounding volume hierarchy: built by `obvhs`, kept in our own small nodes with boxes made safe for rounding.
 
-use crate::geometry::Geometry;
+use crate::geometry::{Geometry, Triangle};
 use glam::{Vec3, Vec3A};
-use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, reinsertion::ReinsertionOptimizer};
+use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, node::Bvh2Node, reinsertion::ReinsertionOptimizer};
 use obvhs::{BvhBuildParams, aabb, ploc::PlocBuilder};
 
 /// A box and what is in it: two nodes side by side, or a run of triangles.
@@ -21,11 +21,18 @@ pub(crate) struct Bvh {
     pub nodes: Vec<Node>,
 }
 
-struct Bounds(aabb::Aabb);
+pub(crate) struct Bounds(aabb::Aabb);
 
 impl obvhs::Boundable for Bounds {
     fn aabb(&self) -> aabb::Aabb {
         self.0
+    }
+}
+
+impl Bounds {
+    /// Of a triangle.
+    pub fn of(triangle: &Triangle) -> Bounds {
+        Bounds(aabb::Aabb::from_points(&triangle.vertices.map(Vec3A::from)))
     }
 }
 
@@ -35,30 +42,24 @@ impl Bvh {
         if geometry.triangles.is_empty() {
             return Bvh { nodes: Vec::new() };
         }
-        let bounds: Vec<Bounds> =
-            geometry.triangles.iter().map(|t| Bounds(aabb::Aabb::from_points(&t.vertices.map(Vec3A::from)))).collect();
+        let bounds: Vec<Bounds> = geometry.triangles.iter().map(Bounds::of).collect();
         let bvh = tree(&bounds, &BvhBuildParams::medium_build());
         geometry.reorder(&bvh.primitive_indices);
         let scale = geometry.triangles.iter().flat_map(|t| t.vertices).fold(Vec3::ZERO, |m, v| m.max(v.abs()));
-        let nodes = bvh
-            .nodes
-            .iter()
-            .map(|n| {
-                let (min, max) = (Vec3::from(n.aabb().min), Vec3::from(n.aabb().max));
-                Node {
-                    min: min - pad(min, scale),
-                    max: max + pad(max, scale),
-                    first: n.first_index,
-                    count: n.prim_count,
-                }
-            })
-            .collect();
-        Bvh { nodes }
+        Bvh { nodes: bvh.nodes.iter().map(|n| Node::of(n, scale)).collect() }
+    }
+}
+
+impl Node {
+    /// A node of `obvhs`; no coordinate of the scene is larger than `scale`.
+    pub fn of(node: &Bvh2Node, scale: Vec3) -> Node {
+        let (min, max) = (Vec3::from(node.aabb().min), Vec3::from(node.aabb().max));
+        Node { min: min - pad(min, scale), max: max + pad(max, scale), first: node.first_index, count: node.prim_count }
     }
 }
 
 /// The steps of `obvhs::bvh2::builder::build_bvh2`, which also takes the time: there is no such clock in a browser.
-fn tree(bounds: &[Bounds], how: &BvhBuildParams) -> Bvh2 {
+pub(crate) fn tree(bounds: &[Bounds], how: &BvhBuildParams) -> Bvh2 {
     let indices = (0..bounds.len() as u32).collect();
     let mut builder = PlocBuilder::with_capacity(bounds.len());
     let mut bvh =

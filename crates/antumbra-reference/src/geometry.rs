@@ -2,6 +2,7 @@
 
 use crate::cutout::Cutout;
 use antumbra_scene::Scene;
+use antumbra_scene::slices::{RUN, at_once};
 use glam::{DVec3, Vec3};
 
 /// A world-space triangle in single precision: exactly these three points are the surface.
@@ -61,6 +62,11 @@ pub(crate) struct Geometry {
 impl Geometry {
     /// Flattens all instances; degenerate triangles are left out.
     pub fn of_scene(scene: &Scene) -> Geometry {
+        at_once(Geometry::with_pauses(scene, &mut async || true)).expect("it is never told to stop")
+    }
+
+    /// The same with a pause after every few thousand triangles; none once `pause` says to stop.
+    pub async fn with_pauses(scene: &Scene, pause: &mut impl AsyncFnMut() -> bool) -> Option<Geometry> {
         let count = scene.triangle_count();
         let mut g =
             Geometry { triangles: Vec::with_capacity(count), sources: Vec::with_capacity(count), cutouts: Vec::new() };
@@ -83,9 +89,12 @@ impl Geometry {
                 }
                 g.triangles.push(triangle);
                 g.sources.push(Source { instance: i as u32, triangle: k as u32 });
+                if k % RUN == RUN - 1 && !pause().await {
+                    return None;
+                }
             }
         }
-        g
+        Some(g)
     }
 
     /// Puts the triangles in the order of `order`, which may leave some out.

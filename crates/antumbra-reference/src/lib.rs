@@ -15,6 +15,7 @@ mod cutout;
 mod exact;
 mod geometry;
 mod packet;
+mod parts;
 mod pattern;
 mod picture;
 mod shaft;

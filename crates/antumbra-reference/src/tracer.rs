@@ -3,6 +3,7 @@
 use crate::bvh::Bvh;
 use crate::geometry::Geometry;
 use crate::packet::{LANES, NONE, Packet, Scratch, Target};
+use crate::parts;
 use antumbra_scene::Scene;
 use fearless_simd::Level;
 use glam::{DVec3, Vec3};
@@ -58,6 +59,15 @@ impl Tracer {
         let mut geometry = Geometry::of_scene(scene);
         let bvh = Bvh::build(&mut geometry);
         Tracer { bvh, geometry, level: Level::new() }
+    }
+
+    /// The same for programs that must do other things in between: after every few milliseconds, of large scenes every
+    /// few tens of them, it waits for `pause`; none once that says that nobody waits. The tree is another one, and as good
+    /// within a few parts in a hundred.
+    pub async fn with_pauses(scene: &Scene, pause: &mut impl AsyncFnMut() -> bool) -> Option<Tracer> {
+        let geometry = Geometry::with_pauses(scene, pause).await?;
+        let (bvh, geometry) = parts::build(geometry, pause).await?;
+        Some(Tracer { bvh, geometry, level: Level::new() })
     }
 
     /// Number of triangles that can be hit.

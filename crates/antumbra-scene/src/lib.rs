@@ -18,6 +18,7 @@ mod mesh;
 mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
+pub mod slices;
 
 pub use bounds::Aabb;
 pub use camera::Camera;

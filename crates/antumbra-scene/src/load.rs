@@ -90,7 +90,8 @@ mod files {
             format!("there is no such file; did you mean `builtin:{argument}`?")
         } else if extension(path) == "json" || extension(path) == "toml" {
             format!("a scene file cannot be used here; give a model: {MODELS}")
-        } else if path.exists() {
+        } else if path.exists() || (cfg!(target_arch = "wasm32") && path.extension().is_some()) {
+            // A page has no disk: what it was given is there.
             format!(
                 "this kind of file is not read; give a model ({MODELS}), a scene file (.toml or .json) or builtin:NAME"
             )

@@ -2,19 +2,21 @@
 
 use crate::commands::{Answer, Command, State, apply};
 use crate::desk::Desk;
-use crate::open::Source;
+use crate::open::{Chosen, EXTENSIONS, Source};
 use crate::save::{self, Saving};
 use crate::session::Session;
 use crate::ui::{self, Memory, Save, Wishes};
 use crate::{here, light};
 use antumbra::Gpu;
+use antumbra::techniques::TECHNIQUES;
 use eframe::egui;
 use eframe::egui_wgpu::RenderState;
 use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
+use web_time::{Duration, Instant};
 
 /// What outlives a lost device.
 pub struct Kept {
@@ -56,6 +58,10 @@ pub struct App {
     screenshot: Option<Screenshot>,
     /// Frames that nothing has been under way.
     idle: u32,
+    /// A file dialog that is open.
+    choosing: Option<Receiver<Chosen>>,
+    /// The frame before, and the longest time between two, while somebody watches.
+    watched: Option<(Instant, Duration)>,
 }
 
 type Answerer = Box<dyn FnOnce(Answer) + Send>;
@@ -85,6 +91,8 @@ impl App {
             saving: None,
             screenshot: None,
             idle: 0,
+            choosing: None,
+            watched: None,
         };
         let source = app.kept.first.take().or_else(|| app.kept.desk.open.clone().map(Source::Again));
         if let Some(source) = source {
@@ -124,10 +132,17 @@ impl App {
                 let made = halves[i].made.iter();
                 made.flat_map(|m| m.1.inner_pictures()).map(|p| p.name).collect()
             }),
+            camera: (desk.camera.eye.to_array(), desk.camera.target.to_array()),
             light: (desk.light.center.to_array(), desk.light.size.to_array()),
             handles: handles.into_iter().map(|(h, p)| (format!("{h:?}"), (p * pixels_per_point).to_array())).collect(),
             truth: session.truth.as_ref().and_then(|t| t.picture.lock().ok().map(|p| p.done())),
+            truth_says: session.truth.as_ref().map(|t| t.progress().to_string()),
             milliseconds: [0, 1].map(|i| halves[i].times.median_total()),
+            longest_frame: self.watched.map(|(_, longest)| 1000.0 * longest.as_secs_f64()),
+            refused: TECHNIQUES
+                .iter()
+                .filter_map(|t| Some((t.name, t.check(&session.gpu).err()?.to_string())))
+                .collect(),
         }
     }
 
@@ -158,6 +173,8 @@ impl App {
             Ok(Some(Command::Open(source))) => self.session.open(Source::Argument(source)),
             Ok(Some(Command::Drop(path))) => self.dropped.push(here::dropped(path)),
             Ok(Some(Command::State)) => answer.state = Some(self.state(ctx.pixels_per_point())),
+            Ok(Some(Command::Choose)) => self.choose_files(ctx),
+            Ok(Some(Command::Watch(watch))) => self.watched = watch.then(|| (Instant::now(), Duration::ZERO)),
             Ok(Some(Command::Dismiss)) => self.memory.notices.clear(),
             Ok(Some(Command::LoseDevice)) => self.session.gpu.device.destroy(),
             Ok(Some(Command::Zoom(zoom))) => ctx.set_zoom_factor(zoom.clamp(0.3, 4.0)),
@@ -224,6 +241,9 @@ impl App {
         if let Some(source) = wishes.open {
             self.session.open(source);
         }
+        if wishes.choose {
+            self.choose_files(ctx);
+        }
         let desk = &self.kept.desk;
         match wishes.save {
             None => {}
@@ -264,6 +284,38 @@ impl App {
         }
     }
 
+    /// Opens the file dialog. A page never learns that its browser has not opened one, so there it is asked for again.
+    fn choose_files(&mut self, ctx: &egui::Context) {
+        if self.choosing.is_none() || cfg!(target_arch = "wasm32") {
+            let woken = ctx.clone();
+            self.choosing = Some(here::choose_files(&EXTENSIONS, move || woken.request_repaint()));
+        } else {
+            self.memory.notices.done("the file dialog is open already, maybe behind this window");
+        }
+    }
+
+    /// Opens what was chosen in the file dialog.
+    fn take_chosen(&mut self) {
+        let Some(chosen) = self.choosing.as_ref().map(Receiver::try_recv) else { return };
+        match chosen {
+            Err(TryRecvError::Empty) => return,
+            Ok(Ok(files)) if !files.is_empty() => self.session.open(Source::Dropped(files)),
+            // It was closed.
+            Ok(Ok(_)) | Err(TryRecvError::Disconnected) => {}
+            Ok(Err(why)) => self.memory.notices.error(why),
+        }
+        self.choosing = None;
+    }
+
+    /// Notes how long the frame before took, while somebody watches.
+    fn watch(&mut self, ctx: &egui::Context) {
+        if let Some((last, longest)) = &mut self.watched {
+            *longest = (*longest).max(last.elapsed());
+            *last = Instant::now();
+            ctx.request_repaint();
+        }
+    }
+
     /// Opens what was dropped on the window.
     fn take_dropped(&mut self, ctx: &egui::Context) {
         let files = ctx.input(|i| i.raw.dropped_files.clone());
@@ -288,6 +340,8 @@ impl eframe::App for App {
                 self.memory.notices.error(message);
             }
         }
+        self.watch(ctx);
+        self.take_chosen();
         self.obey(ctx);
     }
 

@@ -4,6 +4,7 @@
 
 use crate::choice::Choice;
 use crate::desk::{Compare, Desk, Inside};
+use crate::inspect::Part;
 use crate::show::Show;
 use antumbra::Spec;
 use serde::{Deserialize, Serialize};
@@ -17,6 +18,8 @@ pub enum Command {
     Open(String),
     /// A file, as if it were dropped on the window.
     Drop(PathBuf),
+    /// What `Open …` does: the file dialog.
+    Choose,
     /// The technique of a half, as a SPEC.
     Technique {
         /// 0 left, 1 right.
@@ -36,6 +39,8 @@ pub enum Command {
     Resolution(f32),
     /// Looks into the technique of a half; nothing closes the window.
     Inside(Option<usize>),
+    /// Which inner picture is looked at, by its name, and which of its channels.
+    Inner(String, u32),
     /// Opens or closes the help.
     Help(bool),
     /// Answered once nothing is under way.
@@ -52,6 +57,8 @@ pub enum Command {
     LoseDevice,
     /// Another number of pixels for a point.
     Zoom(f32),
+    /// Draws the controls frame after frame and measures the longest time from one to the next, or no longer.
+    Watch(bool),
     /// Closes the window.
     Close,
 }
@@ -90,14 +97,22 @@ pub struct State {
     pub picture: Option<[u32; 2]>,
     /// Names of the inner pictures of each technique.
     pub inner: [Vec<&'static str>; 2],
+    /// Where the camera is, and what it looks at.
+    pub camera: ([f32; 3], [f32; 3]),
     /// Centre and size of the light.
     pub light: ([f32; 3], [f32; 2]),
     /// Places of the light's handles in the window, pixels.
     pub handles: Vec<(String, [f32; 2])>,
     /// The part of the truth that is traced.
     pub truth: Option<f32>,
+    /// How far the truth is, as it is said on the screen.
+    pub truth_says: Option<String>,
     /// Milliseconds on the GPU of each.
     pub milliseconds: [f64; 2],
+    /// The longest time between two frames, milliseconds, since [`Command::Watch`].
+    pub longest_frame: Option<f64>,
+    /// Techniques that cannot be chosen here, and why.
+    pub refused: Vec<(&'static str, String)>,
 }
 
 /// Applies a command that only changes what is on the desk; others come back.
@@ -113,6 +128,10 @@ pub fn apply(command: Command, desk: &mut Desk) -> Result<Option<Command>, Strin
         Command::Divider(divider) => desk.divider = divider.clamp(0.02, 0.98),
         Command::Resolution(resolution) => desk.resolution = Some(resolution.clamp(0.05, 2.0)),
         Command::Inside(half) => desk.inside = half.map(|half| Inside { half, ..Inside::default() }),
+        Command::Inner(name, channel) => {
+            let inside = desk.inside.as_mut().ok_or("nobody looks inside")?;
+            (inside.name, inside.part) = (name, Part { channel, ..Part::default() });
+        }
         Command::Help(help) => desk.help = help,
         other => return Ok(Some(other)),
     }

@@ -131,6 +131,11 @@ impl Desk {
         if self.compare == Compare::Two { 2 } else { 1 }
     }
 
+    /// True if the window that looks inside is open on this half.
+    pub fn looks_inside(&self, half: usize) -> bool {
+        self.inside.as_ref().is_some_and(|i| i.half.min(self.techniques() - 1) == half)
+    }
+
     /// True if the truth is wanted: it is on the right, or errors are shown.
     pub fn wants_truth(&self) -> bool {
         self.compare == Compare::Truth || self.show == Show::Error

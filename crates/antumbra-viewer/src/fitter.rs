@@ -1,6 +1,6 @@
 //! Fitting the shadow frustum: at once for small scenes, in the background for large ones.
 
-use crate::job::Job;
+use crate::job::{Job, Slice};
 use antumbra::{RectLight, ShadowFrustum, View};
 use antumbra_scene::{Instance, Scene};
 
@@ -50,7 +50,9 @@ impl Fitter {
             return Some(frustum);
         }
         self.job = Some(Job::start("Fitting the shadow map", wake, move |_| async move {
-            let frustum = ShadowFrustum::fit(&scene, &what.0);
+            let mut slice = Slice::default();
+            let pause = &mut async || slice.breathe().await;
+            let frustum = ShadowFrustum::fit_with_pauses(&scene, &what.0, pause).await;
             (scene, what, frustum)
         }));
         None

@@ -27,7 +27,7 @@ pub fn parts(content: &InnerContent) -> [u32; 3] {
             [texture.depth_or_array_layers(), texture.mip_level_count(), channels]
         }
         InnerContent::Numbers { channels, .. } => [1, 1, *channels],
-        InnerContent::LightPoints(_) | InnerContent::Pixels { .. } => [1; 3],
+        _ => [1; 3],
     }
 }
 
@@ -36,6 +36,7 @@ pub fn size(content: &InnerContent) -> [u32; 2] {
     match content {
         InnerContent::Texture(texture) => [texture.width(), texture.height()],
         InnerContent::Numbers { size, .. } | InnerContent::Pixels { size, .. } => *size,
+        InnerContent::Mask { side, .. } | InnerContent::ListLengths { side, .. } => [*side; 2],
         InnerContent::LightPoints(_) => [1; 2],
     }
 }
@@ -61,6 +62,8 @@ pub struct Inspector {
     forget: wgpu::ComputePipeline,
     gather_rows: wgpu::ComputePipeline,
     gather_listed: wgpu::ComputePipeline,
+    gather_mask: wgpu::ComputePipeline,
+    gather_lengths: wgpu::ComputePipeline,
     /// `R32Float`, numbers of a buffer where they belong.
     gathered: Option<Texture>,
     look: wgpu::Buffer,
@@ -98,6 +101,8 @@ impl Inspector {
             forget: pipeline("forget", None),
             gather_rows: pipeline("gather_rows", None),
             gather_listed: pipeline("gather_listed", None),
+            gather_mask: pipeline("gather_mask", None),
+            gather_lengths: pipeline("gather_lengths", None),
             gathered: None,
             look: buffer("look", 32, wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST),
             measured: buffer("range", 8, wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
@@ -111,6 +116,8 @@ impl Inspector {
             InnerContent::Texture(texture) => self.draw_texture(gpu, texture, part),
             InnerContent::Pixels { list, size } => self.draw_list(gpu, list, *size),
             InnerContent::Numbers { .. } => self.draw_numbers(gpu, &picture.content, part),
+            InnerContent::Mask { bits, side } => self.draw_most(gpu, bits, *side, false),
+            InnerContent::ListLengths { ends, side } => self.draw_most(gpu, ends, *side, true),
             InnerContent::LightPoints(_) => self.range = None,
         }
     }
@@ -125,22 +132,27 @@ impl Inspector {
 
     fn draw_numbers(&mut self, gpu: &Gpu, content: &InnerContent, part: Part) {
         let InnerContent::Numbers { numbers, stride, size, list, .. } = content else { return };
-        let of_size = |t: &Texture| [t.texture.width(), t.texture.height()] == *size;
-        if !self.gathered.as_ref().is_some_and(of_size) {
-            let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-            let format = wgpu::TextureFormat::R32Float;
-            self.gathered = Some(Texture::new(gpu, "gathered numbers", *size, 1, format, usage));
-        }
-        let gathered = self.gathered.as_ref().expect("just made");
+        let (texture, view) = gathered(&mut self.gathered, gpu, *size);
         let look = [part.layer, part.level, part.channel, size[0], size[1], *stride];
         gpu.queue.write_buffer(&self.look, 0, bytemuck::cast_slice(&look));
-        let into = || entry(6, wgpu::BindingResource::TextureView(&gathered.view));
+        let into = || entry(6, wgpu::BindingResource::TextureView(&view));
         let mut from = vec![entry(0, self.look.as_entire_binding()), entry(5, numbers.as_entire_binding()), into()];
         from.extend(list.as_ref().map(|list| entry(4, list.as_entire_binding())));
         let gather = if list.is_some() { &self.gather_listed } else { &self.gather_rows };
         let empty = [size[0].div_ceil(8), size[1].div_ceil(8)];
         self.run(gpu, &[(&self.forget, empty), (gather, threads(*size))], &[&[into()], &from]);
-        let texture = gathered.texture.clone();
+        self.draw_texture(gpu, &texture, Part::default());
+    }
+
+    /// Of a map of many texels the largest number below each pixel that is shown: lines of single texels would be missed.
+    fn draw_most(&mut self, gpu: &Gpu, numbers: &wgpu::Buffer, side: u32, are_lists: bool) {
+        let size = [side.clamp(1, SIDE); 2];
+        let (texture, view) = gathered(&mut self.gathered, gpu, size);
+        gpu.queue.write_buffer(&self.look, 0, bytemuck::cast_slice(&[0, 0, 0, size[0], size[1], side]));
+        let gather = if are_lists { &self.gather_lengths } else { &self.gather_mask };
+        let into = entry(6, wgpu::BindingResource::TextureView(&view));
+        let from = [entry(0, self.look.as_entire_binding()), entry(4, numbers.as_entire_binding()), into];
+        self.run(gpu, &[(gather, [size[0].div_ceil(8); 2])], &[&from]);
         self.draw_texture(gpu, &texture, Part::default());
     }
 
@@ -182,6 +194,16 @@ impl Inspector {
         }
         gpu.queue.submit([encoder.finish()]);
     }
+}
+
+/// Numbers of a picture of this size where they belong.
+fn gathered(slot: &mut Option<Texture>, gpu: &Gpu, size: [u32; 2]) -> (wgpu::Texture, wgpu::TextureView) {
+    if slot.as_ref().is_none_or(|t| [t.texture.width(), t.texture.height()] != size) {
+        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        *slot = Some(Texture::new(gpu, "gathered numbers", size, 1, wgpu::TextureFormat::R32Float, usage));
+    }
+    let made = slot.as_ref().expect("just made");
+    (made.texture.clone(), made.view.clone())
 }
 
 /// Workgroups of 64 threads, one thread a place.

@@ -8,7 +8,7 @@ struct Look {
     // Of the list's picture, or places of the numbers.
     width: u32,
     height: u32,
-    // Numbers of a place.
+    // Numbers of a place, or places a side of what a mask and lists are of.
     stride: u32,
 }
 
@@ -25,8 +25,8 @@ struct Range {
 @group(0) @binding(5) var<storage, read> numbers: array<f32>;
 @group(0) @binding(6) var gathered: texture_storage_2d<r32float, write>;
 
-// Samples a side that the range is measured on.
-const SAMPLES: u32 = 128u;
+// Samples a side that the range is measured on: as many as pixels are shown.
+const SAMPLES: u32 = 512u;
 
 var<workgroup> lows: array<f32, 256>;
 var<workgroup> highs: array<f32, 256>;
@@ -73,7 +73,8 @@ fn show_values(@builtin(global_invocation_id) pixel: vec3<u32>) {
         return;
     }
     let v = value_at(pixel.xy * textureDimensions(values, look.level) / size);
-    let grey = clamp((v - range.low) / max(range.high - range.low, 1e-30), 0.0, 1.0);
+    // Where all are the same, such as the bits of a mask, they are white.
+    let grey = select(1.0, clamp((v - range.low) / (range.high - range.low), 0.0, 1.0), range.high > range.low);
     let color = select(vec3(0.13, 0.16, 0.28), vec3(0.08 + 0.92 * grey), counts(v));
     textureStore(shown, pixel.xy, vec4(color, 1.0));
 }
@@ -117,4 +118,46 @@ fn gather_listed(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if k < list[3] {
         textureStore(gathered, listed_pixel(k), vec4(numbers[k * look.stride + look.channel]));
     }
+}
+
+// The first and the end of the places, along x or y, that lie below a pixel of what is shown.
+fn places_of(pixel: u32, pixels: u32) -> vec2<u32> {
+    return vec2(pixel, pixel + 1u) * look.stride / pixels;
+}
+
+fn is_set(at: vec2<u32>) -> bool {
+    return ((list[at.y * ((look.stride + 31u) / 32u) + at.x / 32u] >> (at.x % 32u)) & 1u) != 0u;
+}
+
+// Lists lie block by block, 8 x 8 texels a block.
+fn length_of_list(at: vec2<u32>) -> u32 {
+    let block = at.y / 8u * ((look.stride + 7u) / 8u) + at.x / 8u;
+    let k = block * 64u + at.y % 8u * 8u + at.x % 8u;
+    return list[k] - select(0u, list[max(k, 1u) - 1u], k > 0u);
+}
+
+@compute @workgroup_size(8, 8)
+fn gather_mask(@builtin(global_invocation_id) pixel: vec3<u32>) {
+    let xs = places_of(pixel.x, look.width);
+    let ys = places_of(pixel.y, look.height);
+    var most = 0.0;
+    for (var y = ys.x; y < ys.y; y++) {
+        for (var x = xs.x; x < xs.y; x++) {
+            most = select(most, 1.0, is_set(vec2(x, y)));
+        }
+    }
+    textureStore(gathered, pixel.xy, vec4(most));
+}
+
+@compute @workgroup_size(8, 8)
+fn gather_lengths(@builtin(global_invocation_id) pixel: vec3<u32>) {
+    let xs = places_of(pixel.x, look.width);
+    let ys = places_of(pixel.y, look.height);
+    var most = 0u;
+    for (var y = ys.x; y < ys.y; y++) {
+        for (var x = xs.x; x < xs.y; x++) {
+            most = max(most, length_of_list(vec2(x, y)));
+        }
+    }
+    textureStore(gathered, pixel.xy, vec4(f32(most)));
 }

@@ -2,9 +2,10 @@
 
 use crate::desk::Open;
 use crate::here;
-use crate::job::Job;
+use crate::job::{Job, Slice};
 use crate::stage::Stage;
 use antumbra::Gpu;
+use antumbra::scene::Arranged;
 use antumbra_scene::{ReadFile, load_from};
 use eframe::egui;
 use std::path::Path;
@@ -19,6 +20,12 @@ pub enum Source {
     /// A scene that was open before, and its argument: the device was lost.
     Again(Open),
 }
+
+/// What a scene can be in.
+pub const EXTENSIONS: [&str; 6] = ["glb", "gltf", "obj", "ply", "toml", "json"];
+
+/// What came of a file dialog: files, none where it was closed, or why there is no dialog.
+pub type Chosen = Result<Vec<egui::DroppedFileHandle>, String>;
 
 /// Loads a scene and puts it on the GPU.
 pub fn start(
@@ -42,9 +49,12 @@ pub fn start(
         say("Reading").await?;
         let open = read(source).await?;
         let triangles = open.scene.triangle_count();
-        say(&format!("Sorting {} triangles for the GPU", thousands(triangles))).await?;
+        say(&format!("Sorting {} triangles", thousands(triangles))).await?;
         let scene = open.scene.clone();
-        let stage = gpu.checked(|| Stage::new(&gpu, scene, pose)).await.map_err(|e| e.to_string())?;
+        let mut slice = Slice::default();
+        let arranged = Arranged::with_pauses(&scene, &mut async || slice.breathe().await).await;
+        say("Putting it on the GPU").await?;
+        let stage = gpu.checked(|| Stage::new(&gpu, scene, arranged, pose)).await.map_err(|e| e.to_string())?;
         say("Ready").await?;
         Ok((open, stage))
     })

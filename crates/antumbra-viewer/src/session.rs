@@ -36,6 +36,9 @@ pub struct Half {
     /// How far it is from the truth.
     pub measured: Measured,
     timer: Timer,
+    /// Whether it keeps what only people look at, and what is being compiled for that.
+    looked_at: bool,
+    preparing: Option<Job<Result<(), Error>>>,
 }
 
 type Making = Job<Result<Box<dyn Technique>, Error>>;
@@ -85,6 +88,7 @@ struct Wanted {
     choices: [Option<Choice>; 2],
     compare: Compare,
     show: Show,
+    looked_at: [bool; 2],
 }
 
 impl Session {
@@ -98,6 +102,8 @@ impl Session {
                 times: Times::default(),
                 measured: Measured::default(),
                 timer: Timer::new(&gpu)?,
+                looked_at: false,
+                preparing: None,
             })
         };
         let now = Instant::now();
@@ -151,8 +157,9 @@ impl Session {
             }
         }
         if let Some(stage) = &self.stage {
-            for (half, choice) in self.halves.iter_mut().zip(&desk.choices).take(desk.techniques()) {
-                half.work(&self.gpu, stage, choice, &self.ctx);
+            for (i, half) in self.halves.iter_mut().enumerate().take(desk.techniques()) {
+                half.work(&self.gpu, stage, &desk.choices[i], &self.ctx);
+                half.look_inside(desk.looks_inside(i), &self.gpu, stage, &self.ctx);
             }
         }
         messages
@@ -178,7 +185,11 @@ impl Session {
             return Ok(false);
         }
         if self.canvas.as_ref().is_none_or(|c| c.size != size) {
-            self.canvas = Some(Canvas::new(&self.gpu, stage, size)?);
+            let canvas = Canvas::new(&self.gpu, stage, size)?;
+            // Without a shadow until a technique is compiled: all would be dark.
+            let lit = vec![1.0; size[0] as usize * size[1] as usize];
+            canvas.halves.iter().for_each(|half| half.write_visibility(&self.gpu, &lit));
+            self.canvas = Some(canvas);
             self.resized += 1;
             self.truth_written = None;
         }
@@ -191,9 +202,11 @@ impl Session {
             choices: [0, 1].map(|i| self.halves[i].made.as_ref().map(|m| m.0.clone())),
             compare: desk.compare,
             show: desk.show,
+            looked_at: [0, 1].map(|i| self.halves[i].looked_at),
         };
         if self.last.as_ref() != Some(&wanted) {
-            let only_shown = self.last.as_ref().is_some_and(|l| Wanted { show: l.show, ..wanted.clone() } == *l);
+            let of = |l: &Wanted| Wanted { show: l.show, looked_at: l.looked_at, ..wanted.clone() };
+            let only_shown = self.last.as_ref().is_some_and(|l| of(l) == *l);
             if !only_shown {
                 self.changed = Instant::now();
             }
@@ -285,7 +298,7 @@ impl Session {
             self.truth = Some(Truth::start(question, tracer.clone(), wake));
             self.tracer = Some((pose, tracer));
         }
-        if self.truth.as_ref().is_some_and(|t| !t.is_done()) {
+        if self.truth.as_ref().is_some_and(|t| !t.is_over()) {
             self.ctx.request_repaint_after(Duration::from_millis(250));
         }
     }
@@ -328,12 +341,15 @@ impl Session {
 
     /// True if nothing is under way: no loading, compiling, drawing, tracing or measuring.
     pub fn is_idle(&self, desk: &Desk) -> bool {
-        let ready = |(half, choice): (&Half, &Choice)| half.is_settled(choice);
+        let ready = |i: usize| {
+            let half = &self.halves[i];
+            half.is_settled(&desk.choices[i]) && (half.made.is_none() || half.looked_at == desk.looks_inside(i))
+        };
         let drawn = self.left_to_draw == 0 && self.stage.is_some() && self.last.is_some();
-        let traced = !desk.wants_truth() || self.truth.as_ref().is_some_and(Truth::is_done);
+        let traced = !desk.wants_truth() || self.truth.as_ref().is_some_and(Truth::is_over);
         let measured =
             !desk.wants_truth() || self.halves.iter().take(desk.techniques()).all(|h| h.measured.is_current());
-        let made = self.halves.iter().zip(&desk.choices).take(desk.techniques()).all(ready);
+        let made = (0..desk.techniques()).all(ready);
         self.opening.is_none() && drawn && made && traced && measured
     }
 }
@@ -346,7 +362,12 @@ impl Half {
             match result {
                 Ok(Ok(technique)) => {
                     (self.made, self.failed) = (Some((of, technique)), None);
+                    (self.looked_at, self.preparing) = (false, None);
                     self.times = Times::default();
+                    // What the one before has under way are no times of this one.
+                    if let Ok(timer) = Timer::new(gpu) {
+                        self.timer = timer;
+                    }
                 }
                 Ok(Err(error)) => self.failed = Some((of, error.to_string())),
                 Err(died) => self.failed = Some((of, died.to_string())),
@@ -364,6 +385,29 @@ impl Half {
             move |_| async move { Stage::technique(&gpu, &scene, casters, &spec).await },
         );
         self.making = Some((choice.clone(), job));
+    }
+
+    /// Has the technique keep what only people look at once that is compiled, or keep it no longer.
+    fn look_inside(&mut self, wanted: bool, gpu: &Gpu, stage: &Stage, ctx: &egui::Context) {
+        let Some((choice, technique)) = self.made.as_mut().filter(|_| self.looked_at != wanted) else { return };
+        if !wanted {
+            technique.look_inside(false);
+            (self.looked_at, self.preparing) = (false, None);
+            return;
+        }
+        if let Some(result) = self.preparing.as_ref().and_then(Job::poll) {
+            // What the adapter has no room for is not seen; what is there anyway is.
+            technique.look_inside(matches!(result, Ok(Ok(()))));
+            (self.looked_at, self.preparing) = (true, None);
+        } else if self.preparing.is_none() {
+            let (gpu, spec, ctx) = (gpu.clone(), choice.spec(), ctx.clone());
+            let (scene, casters) = (stage.scene.clone(), stage.casters());
+            self.preparing = Some(Job::start(
+                "Looking inside",
+                move || ctx.request_repaint(),
+                move |_| async move { Stage::compile(&gpu, &scene, casters, &spec, true).await },
+            ));
+        }
     }
 
     /// True if the choice is drawn, or known to fail.

@@ -5,7 +5,7 @@ use crate::show::{Show, Shown};
 use antumbra::passes::{geometry_buffer::GeometryBuffer, picture::Picture};
 use antumbra::recorder::PassTime;
 use antumbra::resource::Texture;
-use antumbra::scene::Placed;
+use antumbra::scene::{Arranged, Placed};
 use antumbra::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Technique, Timer, View};
 use antumbra::{casters::Role, frame};
 use antumbra_scene::{Aabb, Instance, Scene};
@@ -32,8 +32,8 @@ pub struct Stage {
 
 impl Stage {
     /// Uploads a scene and compiles what every picture needs. Takes a while: not for the thread that draws.
-    pub fn new(gpu: &Gpu, scene: Arc<Scene>, pose: u64) -> Result<Stage, Error> {
-        let placed = Placed::upload(gpu, &scene)?;
+    pub fn new(gpu: &Gpu, scene: Arc<Scene>, arranged: Arranged, pose: u64) -> Result<Stage, Error> {
+        let placed = Placed::upload_arranged(gpu, &scene, arranged)?;
         let casters = Arc::new(placed.casters.clone());
         let stage = Stage {
             bounds: scene.bounds(),
@@ -61,14 +61,28 @@ impl Stage {
         casters: Arc<Casters>,
         spec: &antumbra::Spec,
     ) -> Result<Box<dyn Technique>, Error> {
-        // One that is thrown away: it believes in maps that were recorded and never drawn.
+        Stage::compile(gpu, scene, casters, spec, false).await?;
+        gpu.checked(|| spec.make(gpu)).await
+    }
+
+    /// Compiles all that a technique will need, where somebody looks inside or not. Takes a while: not for the thread that
+    /// draws.
+    pub async fn compile(
+        gpu: &Gpu,
+        scene: &Scene,
+        casters: Arc<Casters>,
+        spec: &antumbra::Spec,
+        looked_at: bool,
+    ) -> Result<(), Error> {
         gpu.checked(|| {
             let small = Canvas::of(gpu, scene, casters, [8, 8])?;
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            spec.make(gpu)?.record(&small.halves[0].frame, &mut Recorder::new(gpu, &mut encoder))
+            // One that is thrown away: it believes in maps that were recorded and never drawn.
+            let mut technique = spec.make(gpu)?;
+            technique.look_inside(looked_at);
+            technique.record(&small.halves[0].frame, &mut Recorder::new(gpu, &mut encoder))
         })
-        .await?;
-        gpu.checked(|| spec.make(gpu)).await
+        .await
     }
 
     /// What techniques are given.

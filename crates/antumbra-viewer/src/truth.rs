@@ -70,6 +70,11 @@ impl Picture {
         self.rows.iter().all(|&r| r > 0)
     }
 
+    /// True if every row is as fine as it gets.
+    fn is_finest(&self) -> bool {
+        self.rows.iter().all(|&r| usize::from(r) == LEVELS.len())
+    }
+
     /// The fraction of all work that is done, by the rays of the levels.
     pub fn done(&self) -> f32 {
         let total: u32 = LEVELS.iter().map(|l| l[0]).sum();
@@ -81,6 +86,35 @@ impl Picture {
     pub fn rays(&self) -> u32 {
         let least = self.rows.iter().copied().min().unwrap_or(0);
         least.checked_sub(1).map_or(0, |level| LEVELS[usize::from(level)][0])
+    }
+}
+
+/// How far a truth is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Progress {
+    /// The tree over the triangles is being built.
+    Preparing,
+    /// Rows come in.
+    Tracing {
+        /// Part of all work.
+        done: f32,
+        /// Shadow rays a pixel of the coarsest row.
+        rays: u32,
+    },
+    /// As fine as it gets.
+    Done,
+    /// The tracing broke off: no more will come.
+    Died(String),
+}
+
+impl std::fmt::Display for Progress {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Progress::Preparing => write!(f, "sorting triangles for rays …"),
+            Progress::Tracing { done, rays } => write!(f, "{:.0} %   {rays} rays a pixel", 100.0 * done),
+            Progress::Done => write!(f, "1024 rays a pixel"),
+            Progress::Died(why) => write!(f, "cannot be traced: {why}"),
+        }
     }
 }
 
@@ -106,16 +140,35 @@ struct Work {
 pub struct Lazy {
     scene: Arc<Scene>,
     tracer: OnceLock<Tracer>,
+    /// True from when somebody began to build it.
+    begun: AtomicBool,
 }
 
 impl Lazy {
     /// The scene as it stands.
     pub fn new(scene: Arc<Scene>) -> Lazy {
-        Lazy { scene, tracer: OnceLock::new() }
+        Lazy { scene, tracer: OnceLock::new(), begun: AtomicBool::new(false) }
     }
 
-    fn get(&self) -> &Tracer {
-        self.tracer.get_or_init(|| Tracer::new(&self.scene))
+    /// The tree once it is built; none if it is given up because `is_wanted` says so.
+    async fn get(&self, slice: &mut Slice, is_wanted: impl Fn() -> bool) -> Option<&Tracer> {
+        if here::HAS_THREADS {
+            return Some(self.tracer.get_or_init(|| Tracer::new(&self.scene)));
+        }
+        while self.tracer.get().is_none() {
+            if !self.begun.swap(true, Ordering::Relaxed) {
+                let pause = &mut async || {
+                    slice.breathe().await;
+                    is_wanted()
+                };
+                let built = Tracer::with_pauses(&self.scene, pause).await;
+                self.begun.store(false, Ordering::Relaxed);
+                // Nobody else builds it meanwhile.
+                let _ = self.tracer.set(built?);
+            }
+            here::yield_to_frame().await;
+        }
+        self.tracer.get()
     }
 
     /// True once the tree is built.
@@ -139,14 +192,20 @@ impl Truth {
         Truth { question, picture, work }
     }
 
-    /// True while the tree over the triangles is being built.
-    pub fn is_preparing(&self) -> bool {
-        !self.work.tracer.is_ready()
+    /// True if no more will come: it is as fine as it gets, or the tracing broke off.
+    pub fn is_over(&self) -> bool {
+        self.picture.lock().map_or(true, |p| p.died.is_some() || p.is_finest())
     }
 
-    /// True if it is as fine as it gets.
-    pub fn is_done(&self) -> bool {
-        self.picture.lock().is_ok_and(|p| p.rows.iter().all(|&r| usize::from(r) == LEVELS.len()))
+    /// How far it is, for people.
+    pub fn progress(&self) -> Progress {
+        let Ok(picture) = self.picture.lock() else { return Progress::Died("its picture is lost".to_owned()) };
+        match &picture.died {
+            Some(died) => Progress::Died(died.to_string()),
+            None if picture.is_finest() => Progress::Done,
+            None if picture.version == 0 && !self.work.tracer.is_ready() => Progress::Preparing,
+            None => Progress::Tracing { done: picture.done(), rays: picture.rays() },
+        }
     }
 }
 
@@ -188,7 +247,10 @@ impl Work {
         }
         let [light_samples, pixel_samples] = LEVELS[level];
         let settings = Settings { light_samples, pixel_samples, ..Settings::of_size(width, height) };
-        let view = View::new(self.tracer.get(), &self.question.camera, &self.question.light, &settings);
+        // The next truth of the same scene goes on with what this one has begun.
+        let is_wanted = || !self.is_cancelled() || Arc::strong_count(&self.tracer) > 1;
+        let Some(tracer) = self.tracer.get(slice, is_wanted).await else { return false };
+        let view = View::new(tracer, &self.question.camera, &self.question.light, &settings);
         let y = spread(next % height, height);
         let mut pixels = Vec::with_capacity(width as usize);
         for x in (0..width).step_by(RUN as usize) {
@@ -243,7 +305,7 @@ mod tests {
         let question = Question { camera: scene.camera, light: scene.light, size, pose: 0 };
         let truth = Truth::start(question, Arc::new(Lazy::new(Arc::new(scene.clone()))), || ());
         for _ in 0..3000 {
-            if truth.is_done() {
+            if truth.is_over() {
                 break;
             }
             std::thread::sleep(std::time::Duration::from_millis(10));
@@ -254,6 +316,23 @@ mod tests {
         assert_eq!((picture.done(), picture.rays()), (1.0, 1024));
         assert_eq!(picture.visibility, whole.visibility);
         assert_eq!(picture.valid, whole.valid);
+    }
+
+    #[test]
+    fn a_truth_that_breaks_off_says_so() {
+        let mut scene = antumbra_scene::builtin::build("square").unwrap();
+        // No importer gives such a mesh: a corner that is not there.
+        scene.meshes[0].indices[0] = u32::MAX;
+        let question = Question { camera: scene.camera, light: scene.light, size: [24, 16], pose: 0 };
+        let truth = Truth::start(question, Arc::new(Lazy::new(Arc::new(scene))), || ());
+        for _ in 0..3000 {
+            if truth.is_over() {
+                break;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        let said = truth.progress().to_string();
+        assert!(said.contains("cannot be traced") && said.contains("out of bounds"), "{said}");
     }
 
     #[test]

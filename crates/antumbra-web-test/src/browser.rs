@@ -10,10 +10,15 @@ use tungstenite::{Message, WebSocket};
 /// A browser with one page. It is closed when this is dropped.
 pub struct Browser {
     process: Child,
+    /// Talks of the browser as a whole.
+    whole: WebSocket<TcpStream>,
+    /// Talks of the page.
     page: WebSocket<TcpStream>,
     calls: u64,
     /// Errors on the page's console, and exceptions that nobody caught.
     pub errors: Vec<String>,
+    /// What else the page has told, by name, since it was last asked for.
+    events: Vec<Value>,
     _folder: tempfile::TempDir,
 }
 
@@ -58,9 +63,10 @@ impl Browser {
                 return Err(error);
             }
         };
+        let [whole, page] = [connect(port, &path)?, connect(port, &path)?];
         let mut browser =
-            Browser { page: connect(port, &path)?, process, calls: 0, errors: Vec::new(), _folder: folder };
-        let made = browser.call("Target.createTarget", json!({ "url": "about:blank" }))?;
+            Browser { whole, page, process, calls: 0, errors: Vec::new(), events: Vec::new(), _folder: folder };
+        let made = browser.call_whole("Target.createTarget", json!({ "url": "about:blank" }))?;
         let target = made["targetId"].as_str().ok_or("the browser opens no page")?;
         browser.page = connect(port, &format!("/devtools/page/{target}"))?;
         for domain in ["Page.enable", "Runtime.enable", "Log.enable"] {
@@ -69,35 +75,66 @@ impl Browser {
         Ok(browser)
     }
 
-    /// Calls a method of the protocol.
+    /// Calls a method of the protocol that is about the page.
     pub fn call(&mut self, method: &str, parameters: Value) -> Outcome<Value> {
         self.calls += 1;
-        let id = self.calls;
-        let text = json!({ "id": id, "method": method, "params": parameters }).to_string();
-        self.page.send(Message::text(text)).map_err(|e| format!("{method}: {e}"))?;
+        send(&mut self.page, self.calls, method, parameters)?;
         loop {
-            let message = self.page.read().map_err(|e| format!("{method}: no answer: {e}"))?;
-            let Message::Text(text) = message else { continue };
-            let value: Value = serde_json::from_str(&text).map_err(|e| e.to_string())?;
-            if value["id"] == id {
-                return match value.get("error") {
-                    Some(error) => Err(format!("{method}: {error}")),
-                    None => Ok(value["result"].clone()),
-                };
+            let value = receive(&mut self.page, method)?;
+            if value["id"] == self.calls {
+                return result(method, value);
             }
             self.errors.extend(error_in(&value));
+            self.events.push(value);
         }
+    }
+
+    /// Calls a method of the protocol that is about the browser as a whole.
+    pub fn call_whole(&mut self, method: &str, parameters: Value) -> Outcome<Value> {
+        self.calls += 1;
+        send(&mut self.whole, self.calls, method, parameters)?;
+        loop {
+            let value = receive(&mut self.whole, method)?;
+            if value["id"] == self.calls {
+                return result(method, value);
+            }
+        }
+    }
+
+    /// Waits until the page tells of an event of this name; what it told before has been forgotten by [`Browser::forget`].
+    pub fn event(&mut self, name: &str, most: Duration) -> Outcome<Value> {
+        let start = Instant::now();
+        loop {
+            // Whatever it answers, events come with it.
+            self.value("0")?;
+            if let Some(event) = self.events.iter().find(|e| e["method"] == name) {
+                return Ok(event["params"].clone());
+            }
+            if start.elapsed() > most {
+                let names: Vec<_> = self.events.iter().filter_map(|e| e["method"].as_str()).collect();
+                return Err(format!("no {name} within {} s, but {names:?}", most.as_secs()));
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    /// Forgets what the page has told so far.
+    pub fn forget(&mut self) {
+        self.events.clear();
     }
 
     /// Goes to an address; what is on the console counts from here.
     pub fn open(&mut self, address: &str) -> Outcome<()> {
         self.errors.clear();
+        self.forget();
         self.call("Page.navigate", json!({ "url": address })).map(|_| ())
     }
 
     /// The value of an expression; promises are waited for.
     pub fn value(&mut self, expression: &str) -> Outcome<Value> {
-        let asked = json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
+        // As if by a click: browsers open a file dialog for nothing less.
+        let asked =
+            json!({ "expression": expression, "awaitPromise": true, "returnByValue": true, "userGesture": true });
         let answer = self.call("Runtime.evaluate", asked)?;
         match answer.get("exceptionDetails") {
             Some(details) => Err(format!("{expression}: {}", details["exception"]["description"])),
@@ -129,7 +166,7 @@ impl Browser {
 impl Drop for Browser {
     fn drop(&mut self) {
         // Closed in order its children end too; it may have ended by itself.
-        let _ = self.page.send(Message::text(json!({ "id": 0, "method": "Browser.close" }).to_string()));
+        let _ = self.whole.send(Message::text(json!({ "id": 0, "method": "Browser.close" }).to_string()));
         for _ in 0..50 {
             if !matches!(self.process.try_wait(), Ok(None)) {
                 return;
@@ -158,6 +195,28 @@ fn address(process: &mut Child) -> Outcome<(u16, String)> {
         said = format!("{said}\n{line}");
     }
     Err(format!("the browser ended at once:{said}"))
+}
+
+fn send(socket: &mut WebSocket<TcpStream>, id: u64, method: &str, parameters: Value) -> Outcome<()> {
+    let text = json!({ "id": id, "method": method, "params": parameters }).to_string();
+    socket.send(Message::text(text)).map_err(|e| format!("{method}: {e}"))
+}
+
+/// The next message while an answer to `method` is waited for.
+fn receive(socket: &mut WebSocket<TcpStream>, method: &str) -> Outcome<Value> {
+    loop {
+        let message = socket.read().map_err(|e| format!("{method}: no answer: {e}"))?;
+        if let Message::Text(text) = message {
+            return serde_json::from_str(&text).map_err(|e| e.to_string());
+        }
+    }
+}
+
+fn result(method: &str, answer: Value) -> Outcome<Value> {
+    match answer.get("error") {
+        Some(error) => Err(format!("{method}: {error}")),
+        None => Ok(answer["result"].clone()),
+    }
 }
 
 fn connect(port: u16, path: &str) -> Outcome<WebSocket<TcpStream>> {

@@ -1,13 +1,17 @@
 //! Drives the page of the viewer in a headless browser: `cargo xtask test-web`.
 //!
 //! Called with the page's folder, and maybe with SPECs in the place of the usual three, or `all`. It compares the error
-//! of each technique with what the program `antumbra` gives for the same scene and size, and keeps a screenshot of each
-//! beside the folder.
+//! of each technique with what the program `antumbra` gives for the same scene and size, does to the page what people do
+//! ([`checks`]), and keeps screenshots beside the folder. `--check NAME` does only the checks whose names have that part.
 
 mod browser;
+mod checks;
+mod page;
 mod server;
 
 use browser::Browser;
+use checks::CHECKS;
+use page::Page;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -25,13 +29,20 @@ const PATIENCE: Duration = Duration::from_secs(420);
 
 type Outcome<T> = Result<T, String>;
 
+/// What to drive it with.
+struct Arguments {
+    specs: Vec<String>,
+    /// A part of the names of the checks that are wanted, and nothing else.
+    check: Option<String>,
+}
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let Some((page, specs)) = arguments.split_first() else {
-        eprintln!("antumbra-web-test PAGE [SPEC … | all]");
+    let Some((page, rest)) = arguments.split_first() else {
+        eprintln!("antumbra-web-test PAGE [SPEC … | all | --check NAME]");
         return ExitCode::from(2);
     };
-    match chosen(specs).and_then(|specs| run(Path::new(page), &specs)) {
+    match chosen(rest).and_then(|rest| run(Path::new(page), &rest)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("the page fails: {error}");
@@ -40,16 +51,18 @@ fn main() -> ExitCode {
     }
 }
 
-fn chosen(arguments: &[String]) -> Outcome<Vec<String>> {
+fn chosen(arguments: &[String]) -> Outcome<Arguments> {
+    let of = |specs| Ok(Arguments { specs, check: None });
     match arguments {
-        [] => Ok(SPECS.map(str::to_owned).to_vec()),
+        [] => of(SPECS.map(str::to_owned).to_vec()),
+        [option, name] if option == "--check" => Ok(Arguments { specs: Vec::new(), check: Some(name.clone()) }),
         [all] if all == "all" => {
             let techniques: Value =
                 serde_json::from_str(&antumbra(&["techniques", "--json"])?).map_err(|e| e.to_string())?;
             let names = techniques.as_array().into_iter().flatten().filter_map(|t| t["name"].as_str());
-            Ok(names.map(str::to_owned).collect())
+            of(names.map(str::to_owned).collect())
         }
-        _ => Ok(arguments.to_vec()),
+        _ => of(arguments.to_vec()),
     }
 }
 
@@ -64,82 +77,69 @@ fn antumbra(arguments: &[&str]) -> Outcome<String> {
     }
 }
 
-fn run(page: &Path, specs: &[String]) -> Outcome<()> {
+fn run(page: &Path, arguments: &Arguments) -> Outcome<()> {
     let shots = page.with_file_name("page-test");
     std::fs::create_dir_all(&shots).map_err(|e| e.to_string())?;
     let address = server::serve(page.to_path_buf()).map_err(|e| e.to_string())?;
-    let mut browser = Browser::start(WINDOW)?;
-    says_what_is_missing(&mut browser, &address, &shots)?;
-    let drawn = draw(&mut browser, &address, &shots, specs);
-    if drawn.is_err() {
-        let shot = browser.screenshot()?;
-        std::fs::write(shots.join("failed.png"), shot).map_err(|e| e.to_string())?;
+    let mut page = Page { browser: Browser::start(WINDOW)?, address, shots };
+    let all = drive(&mut page, arguments);
+    if all.is_err() {
+        page.shot("failed")?;
     }
-    drop(browser);
-    let (state, errors) = drawn?;
-    compare(&state, specs, &errors)
+    all
+}
+
+/// Everything, one after the other; the first that is wrong ends it.
+fn drive(page: &mut Page, arguments: &Arguments) -> Outcome<()> {
+    if arguments.check.is_none() {
+        says_what_is_missing(page)?;
+        let (state, errors) = draw(page, &arguments.specs)?;
+        compare(&state, &arguments.specs, &errors)?;
+    }
+    let named = |name: &str| arguments.check.as_ref().is_none_or(|part| name.contains(part.as_str()));
+    for (name, check) in CHECKS.into_iter().filter(|(name, _)| named(name)) {
+        let start = Instant::now();
+        let seen = check(page).map_err(|e| format!("{name}: {e}"))?;
+        println!("{name}: {seen} ({:.1} s)", start.elapsed().as_secs_f32());
+    }
+    Ok(())
 }
 
 /// What the page says at the end, and the error of each technique.
-fn draw(browser: &mut Browser, address: &str, shots: &Path, specs: &[String]) -> Outcome<(Value, Vec<f64>)> {
+fn draw(page: &mut Page, specs: &[String]) -> Outcome<(Value, Vec<f64>)> {
     let start = Instant::now();
     let first = &specs[0];
-    let query = format!("?scene={SCENE}&technique={first}&compare=truth&resolution={RESOLUTION}");
-    browser.open(&format!("{address}/{query}"))?;
-    browser.wait_for("!!window.antumbra?.ask && document.getElementById('cover').className != ''", PATIENCE)?;
-    rest(browser)?;
+    page.open(&format!("?scene={SCENE}&technique={first}&compare=truth&resolution={RESOLUTION}"))?;
+    page.rest()?;
     println!("loaded, drawn and traced in {:.1} s", start.elapsed().as_secs_f32());
 
     let mut errors = Vec::new();
     for spec in specs {
         let start = Instant::now();
-        ask(browser, &json!({ "technique": { "half": 0, "spec": spec } }))?;
-        rest(browser)?;
-        let state = ask(browser, &json!("state"))?["state"].clone();
-        let shot = shots.join(format!("{}.png", spec.replace([':', '=', ','], "-")));
-        std::fs::write(&shot, browser.screenshot()?).map_err(|e| format!("{}: {e}", shot.display()))?;
+        page.ask(&json!({ "technique": { "half": 0, "spec": spec } }))?;
+        page.rest()?;
+        let state = page.state()?;
+        page.shot(&spec.replace([':', '=', ','], "-"))?;
         let seconds = start.elapsed().as_secs_f32();
         errors.push(error_of(&state, spec).inspect_err(|e| println!("{spec}: {e} ({seconds:.1} s)"))?);
         println!("{spec}: average error {:.4} ({seconds:.1} s)", errors[errors.len() - 1]);
     }
-    let state = ask(browser, &json!("state"))?["state"].clone();
-    if !browser.errors.is_empty() {
-        return Err(format!("errors on the console:\n{}", browser.errors.join("\n")));
-    }
-    Ok((state, errors))
+    page.no_errors()?;
+    Ok((page.state()?, errors))
 }
 
 /// Without WebGPU the page says so in words.
-fn says_what_is_missing(browser: &mut Browser, address: &str, shots: &Path) -> Outcome<()> {
+fn says_what_is_missing(page: &mut Page) -> Outcome<()> {
     let hide = "Object.defineProperty(Navigator.prototype, 'gpu', { get: () => undefined })";
-    let script = browser.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": hide }))?;
-    browser.open(address)?;
-    browser.wait_for("document.getElementById('cover')?.className == 'failed'", PATIENCE)?;
-    let text = browser.value("document.getElementById('message').innerText")?;
+    let script = page.browser.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": hide }))?;
+    page.browser.open(&page.address)?;
+    page.browser.wait_for("document.getElementById('cover')?.className == 'failed'", PATIENCE)?;
+    let text = page.browser.value("document.getElementById('message').innerText")?;
     let said = text.as_str().is_some_and(|t| t.contains("no WebGPU"));
-    std::fs::write(shots.join("no-webgpu.png"), browser.screenshot()?).map_err(|e| e.to_string())?;
-    browser.call("Page.removeScriptToEvaluateOnNewDocument", json!({ "identifier": script["identifier"] }))?;
+    page.shot("no-webgpu")?;
+    let identifier = json!({ "identifier": script["identifier"] });
+    page.browser.call("Page.removeScriptToEvaluateOnNewDocument", identifier)?;
     if said { Ok(()) } else { Err(format!("without WebGPU the page says: {text}")) }
-}
-
-/// Waits until nothing is under way on the page.
-fn rest(browser: &mut Browser) -> Outcome<()> {
-    browser.value("window.rested = false, antumbra.ask('wait').then(() => window.rested = true), 0")?;
-    let rested = browser.wait_for("window.rested || document.getElementById('cover').className == 'failed'", PATIENCE);
-    match rested.and_then(|()| browser.value("window.rested")) {
-        Ok(Value::Bool(true)) => Ok(()),
-        Ok(_) => Err(format!("the page broke off:\n{}", browser.errors.join("\n"))),
-        Err(error) => Err(format!("{error}\n{}", browser.errors.join("\n"))),
-    }
-}
-
-/// The answer to a command.
-fn ask(browser: &mut Browser, command: &Value) -> Outcome<Value> {
-    let answer = browser.value(&format!("antumbra.ask({command})"))?;
-    match answer.get("error").and_then(Value::as_str) {
-        Some(error) => Err(format!("{command}: {error}")),
-        None => Ok(answer),
-    }
 }
 
 /// The average error of what is drawn, if all went well.

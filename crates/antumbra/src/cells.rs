@@ -5,6 +5,7 @@
 //! affine.
 
 use antumbra_scene::Scene;
+use antumbra_scene::slices::RUN;
 use glam::{Vec2, Vec3, Vec4};
 
 /// Cells a side.
@@ -65,24 +66,37 @@ impl Cells {
     }
 }
 
-/// Calls with the world-space corners of every triangle and the place of its instance.
-pub(crate) fn for_each_world_triangle(scene: &Scene, mut call: impl FnMut([Vec3; 3], usize)) {
+/// Calls with the world-space corners of every triangle and the place of its instance, with a pause after every few
+/// thousand.
+pub(crate) async fn each_world_triangle(
+    scene: &Scene,
+    mut call: impl FnMut([Vec3; 3], usize),
+    pause: &mut impl AsyncFnMut(),
+) {
     let mut moved = Vec::new();
     for (place, instance) in scene.instances.iter().enumerate() {
         let mesh = &scene.meshes[instance.mesh];
         moved.clear();
         moved.extend(mesh.positions.iter().map(|p| instance.world_from_object.transform_point3(*p)));
-        for t in mesh.indices.chunks_exact(3) {
-            call([t[0], t[1], t[2]].map(|i| moved[i as usize]), place);
+        for run in mesh.indices.chunks(3 * RUN) {
+            for t in run.chunks_exact(3) {
+                call([t[0], t[1], t[2]].map(|i| moved[i as usize]), place);
+            }
+            pause().await;
         }
     }
 }
 
-/// Calls with every triangle that lies in front of the light: three corners in light space, and its instance.
-pub(crate) fn for_each_triangle(scene: &Scene, mut call: impl FnMut([Vec3; 3], usize)) {
+/// Calls with every triangle that lies in front of the light: three corners in light space, and its instance; with a pause
+/// after every few thousand.
+pub(crate) async fn each_triangle(
+    scene: &Scene,
+    mut call: impl FnMut([Vec3; 3], usize),
+    pause: &mut impl AsyncFnMut(),
+) {
     let light = scene.light;
     let (right, up, forward) = light.basis();
-    for_each_world_triangle(scene, |corners, instance| {
+    let towards_light = |corners: [Vec3; 3], instance: usize| {
         let corners = corners.map(|p| {
             let d = p - light.center;
             Vec3::new(d.dot(right), d.dot(up), d.dot(forward))
@@ -90,7 +104,8 @@ pub(crate) fn for_each_triangle(scene: &Scene, mut call: impl FnMut([Vec3; 3], u
         if corners.iter().any(|c| c.z > 0.0) {
             call(corners, instance);
         }
-    });
+    };
+    each_world_triangle(scene, towards_light, pause).await;
 }
 
 /// The corners of the part of a triangle that lies on the upper side of all planes [Sutherland, Hodgman 1974].

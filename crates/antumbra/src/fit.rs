@@ -2,9 +2,9 @@
 //!
 //! All is measured in the map's own coordinates, tangents xy / z and inverse distance 1 / z, in which planes are affine.
 
-use crate::cells::{Cells, clipped, for_each_triangle, for_each_world_triangle, plane_of};
+use crate::cells::{Cells, clipped, each_triangle, each_world_triangle, plane_of};
 use crate::{View, passes::culling::MapView};
-use antumbra_scene::{Aabb, RectLight, Scene};
+use antumbra_scene::{Aabb, RectLight, Scene, slices::at_once};
 use glam::{Vec2, Vec3};
 
 /// A symmetric frustum from the light's centre along its normal.
@@ -66,22 +66,28 @@ impl ShadowFrustum {
     /// them (the ground, as a rule) cast on nothing, so they do not widen it. Reads every triangle: a few hundred
     /// milliseconds for millions of them, once for a scene whose light and view rest.
     pub fn fit(scene: &Scene, view: &View) -> ShadowFrustum {
+        at_once(ShadowFrustum::fit_with_pauses(scene, view, &mut async || ()))
+    }
+
+    /// The same for programs that must do other things in between: after every few milliseconds it waits for `pause`.
+    pub async fn fit_with_pauses(scene: &Scene, view: &View, pause: &mut impl AsyncFnMut()) -> ShadowFrustum {
         let around = ShadowFrustum::around(&scene.light, &scene.bounds());
         if scene.light.shadow_fov_deg.is_some() {
             return around;
         }
-        let seen = seen_range(scene, view);
+        let seen = seen_range(scene, view, pause).await;
         if seen.is_empty() {
             return around;
         }
         let half_light = scene.light.size * 0.5;
-        let deepest = DeepestSurface::of(scene, &seen);
+        let deepest = DeepestSurface::of(scene, &seen, pause).await;
         let mut casting = Vec2::ZERO;
-        for_each_triangle(scene, |corners, instance| {
+        let cast = |corners: [Vec3; 3], instance: usize| {
             if !scene.instances[instance].receiver_only {
                 casting = casting.max(deepest.reach_of_caster(corners, half_light));
             }
-        });
+        };
+        each_triangle(scene, cast, pause).await;
         // Receivers beyond the reach of casters are lit, casters beyond that of receivers are of no use.
         let tan = casting.min(seen.reach(half_light, deepest.nearest_q));
         if tan.max_element() <= 0.0 {
@@ -127,10 +133,10 @@ impl Seen {
 }
 
 /// Where the surfaces within the view's frustum lie in the map.
-fn seen_range(scene: &Scene, view: &View) -> Seen {
+async fn seen_range(scene: &Scene, view: &View, pause: &mut impl AsyncFnMut()) -> Seen {
     let planes = MapView::new(view.clip_from_world()).planes_ws;
     let mut seen = Seen { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY, far_q: f32::INFINITY, near_q: 0.0 };
-    for_each_world_triangle(scene, |corners, _| {
+    let widen = |corners: [Vec3; 3], _| {
         for p in clipped(&corners, &planes) {
             let l = scene.light.light_from_world(p);
             if l.z > 0.0 {
@@ -141,7 +147,8 @@ fn seen_range(scene: &Scene, view: &View) -> Seen {
                 seen.near_q = seen.near_q.max(1.0 / l.z);
             }
         }
-    });
+    };
+    each_world_triangle(scene, widen, pause).await;
     seen
 }
 
@@ -155,12 +162,13 @@ struct DeepestSurface {
 }
 
 impl DeepestSurface {
-    fn of(scene: &Scene, seen: &Seen) -> DeepestSurface {
+    async fn of(scene: &Scene, seen: &Seen, pause: &mut impl AsyncFnMut()) -> DeepestSurface {
         // Shadows reach visible surfaces from casters that project a little beside them.
         let cells = Cells::over(seen.low, seen.high);
         let nothing = Vec3::new(0.0, 0.0, f32::INFINITY);
         let mut grid = DeepestSurface { cells, planes: vec![nothing; Cells::COUNT], nearest_q: 0.0 };
-        for_each_triangle(scene, |corners, instance| grid.add(corners, scene.instances[instance].receiver_only));
+        let add = |corners: [Vec3; 3], instance: usize| grid.add(corners, scene.instances[instance].receiver_only);
+        each_triangle(scene, add, pause).await;
         grid
     }
 

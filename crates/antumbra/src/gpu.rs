@@ -1,7 +1,7 @@
 //! The device that everything runs on: choice, capabilities, and the pipelines that are compiled once.
 
 use crate::pipeline::{ComputePipeline, PipelineCache, RenderPipeline, RenderTarget};
-use crate::shader::ShaderKey;
+use crate::shader::{Needs, ShaderKey};
 use crate::{Error, resource::Texture};
 use std::sync::Arc;
 
@@ -208,6 +208,11 @@ impl Gpu {
     /// A render pipeline, compiled at the first call. Entry points are `vertex` and `fragment`.
     pub fn render_pipeline(&self, key: &ShaderKey, target: &RenderTarget) -> Result<Arc<RenderPipeline>, Error> {
         self.pipelines.render(&self.device, key, target)
+    }
+
+    /// The most that any shader has asked for so far of what devices give a limited number of.
+    pub fn needs(&self) -> Needs {
+        self.pipelines.needs()
     }
 
     /// Waits until all submitted work is done.

@@ -1,6 +1,6 @@
 //! Pipelines that are compiled once a device, and bind groups made by the names in the shader.
 
-use crate::shader::{Bindings, Program, ShaderKey};
+use crate::shader::{Bindings, Needs, Program, ShaderKey};
 use crate::{Error, Gpu};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
@@ -130,21 +130,6 @@ fn bind_group(
     gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: Some(name), layout, entries: &entries })
 }
 
-/// Refuses a shader that needs more than the device gives, by name: what the driver says is for us, not for users.
-fn check_limits(device: &wgpu::Device, key: &ShaderKey, program: &Program, entry: &str) -> Result<(), Error> {
-    let (needs, limits) = (program.needs(entry), device.limits());
-    let pairs = [
-        ("storage buffers", needs.storage_buffers, limits.max_storage_buffers_per_shader_stage),
-        ("storage textures", needs.storage_textures, limits.max_storage_textures_per_shader_stage),
-        ("textures", needs.sampled_textures, limits.max_sampled_textures_per_shader_stage),
-        ("bytes of workgroup memory", needs.workgroup_bytes, limits.max_compute_workgroup_storage_size),
-    ];
-    match pairs.into_iter().find(|(_, needed, given)| needed > given) {
-        None => Ok(()),
-        Some((what, needed, given)) => Err(Error::Limit { shader: key.module, what, needed, given }),
-    }
-}
-
 type ComputeKey = (ShaderKey, &'static str);
 type RenderKey = (ShaderKey, RenderTarget);
 
@@ -154,9 +139,23 @@ type RenderKey = (ShaderKey, RenderTarget);
 pub(crate) struct PipelineCache {
     compute: Mutex<HashMap<ComputeKey, Arc<ComputePipeline>>>,
     render: Mutex<HashMap<RenderKey, Arc<RenderPipeline>>>,
+    most: Mutex<Needs>,
 }
 
 impl PipelineCache {
+    /// The most that any shader has asked for.
+    pub(crate) fn needs(&self) -> Needs {
+        *self.most.lock().expect("only numbers are moved under the lock")
+    }
+
+    /// Refuses a shader that needs more than the device gives, by name: what the driver says is for us, not for users.
+    fn check(&self, device: &wgpu::Device, key: &ShaderKey, program: &Program, entry: &str) -> Result<(), Error> {
+        let needs = program.needs(entry);
+        let mut most = self.most.lock().expect("only numbers are moved under the lock");
+        *most = most.max(needs);
+        needs.check(key.module, &device.limits())
+    }
+
     pub(crate) fn compute(
         &self,
         device: &wgpu::Device,
@@ -168,7 +167,7 @@ impl PipelineCache {
             return Ok(found.clone());
         }
         let program = Program::compose(key)?;
-        check_limits(device, key, &program, entry)?;
+        self.check(device, key, &program, entry)?;
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(key.module),
             layout: None,
@@ -200,7 +199,7 @@ impl PipelineCache {
         let program = Program::compose(key)?;
         let has_fragment = program.entry_points().any(|e| e == "fragment");
         for entry in ["vertex", "fragment"] {
-            check_limits(device, key, &program, entry)?;
+            self.check(device, key, &program, entry)?;
         }
         let module = shader_module(device, key, &program);
         let one = wgpu::BlendFactor::One;

@@ -1,8 +1,8 @@
 //! Who casts on whom, for techniques that part a scene into occluders and receivers.
 
 use crate::casters::Role;
-use crate::cells::{Cells, clipped, for_each_triangle, plane_of};
-use antumbra_scene::Scene;
+use crate::cells::{Cells, clipped, each_triangle, plane_of};
+use antumbra_scene::{Scene, slices::at_once};
 use glam::{Vec2, Vec3};
 
 /// An occluder must be nearer to the light than what it is above by this part of its distance.
@@ -14,11 +14,17 @@ const MAX_TAN: f32 = 5.67;
 /// The role of each instance: what says that it only receives does; the ground and all else that is above no surface of
 /// another instance, seen from the light's centre, is [`Role::Ground`]; the rest casts.
 pub fn roles(scene: &Scene) -> Vec<Role> {
-    let deepest = TwoDeepest::of(scene);
+    at_once(roles_with_pauses(scene, &mut async || ()))
+}
+
+/// The same with a pause after every few thousand triangles.
+pub(crate) async fn roles_with_pauses(scene: &Scene, pause: &mut impl AsyncFnMut()) -> Vec<Role> {
+    let deepest = TwoDeepest::of(scene, pause).await;
     let mut casts = vec![false; scene.instances.len()];
-    for_each_triangle(scene, |corners, instance| {
+    let look = |corners: [Vec3; 3], instance: usize| {
         casts[instance] = casts[instance] || deepest.is_above_another(corners, instance);
-    });
+    };
+    each_triangle(scene, look, pause).await;
     let role = |(instance, casts): (&antumbra_scene::Instance, bool)| match (instance.receiver_only, casts) {
         (true, _) => Role::Receiver,
         (false, false) => Role::Ground,
@@ -48,17 +54,18 @@ struct TwoDeepest {
 }
 
 impl TwoDeepest {
-    fn of(scene: &Scene) -> TwoDeepest {
+    async fn of(scene: &Scene, pause: &mut impl AsyncFnMut()) -> TwoDeepest {
         let (mut low, mut high) = (Vec2::splat(MAX_TAN), Vec2::splat(-MAX_TAN));
-        for_each_triangle(scene, |corners, _| {
+        let widen = |corners: [Vec3; 3], _| {
             for c in corners.iter().filter(|c| c.z > 0.0) {
                 let t = (c.truncate() / c.z).clamp(Vec2::splat(-MAX_TAN), Vec2::splat(MAX_TAN));
                 (low, high) = (low.min(t), high.max(t));
             }
-        });
+        };
+        each_triangle(scene, widen, pause).await;
         let nothing = Surface { plane: Vec3::new(0.0, 0.0, f32::INFINITY), instance: usize::MAX };
         let mut two = TwoDeepest { cells: Cells::over(low, high.max(low)), surfaces: vec![[nothing; 2]; Cells::COUNT] };
-        for_each_triangle(scene, |corners, instance| two.add(corners, instance));
+        each_triangle(scene, |corners, instance| two.add(corners, instance), pause).await;
         two
     }
 

@@ -1,5 +1,6 @@
 //! From WESL modules to a validated WGSL program whose bindings are known by name.
 
+use crate::Error;
 use naga::valid::{Capabilities, ModuleInfo, ValidationFlags, Validator};
 use std::collections::BTreeMap;
 use wesl::{ManglerKind, ModulePath, VirtualResolver, Wesl};
@@ -133,7 +134,7 @@ pub struct Program {
 }
 
 /// What one shader takes of what devices give a limited number of.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Needs {
     /// Storage buffers.
     pub storage_buffers: u32,
@@ -143,6 +144,36 @@ pub struct Needs {
     pub sampled_textures: u32,
     /// Memory that a workgroup shares.
     pub workgroup_bytes: u32,
+}
+
+impl Needs {
+    /// What every WebGPU device gives.
+    pub const CORE: Needs =
+        Needs { storage_buffers: 8, storage_textures: 4, sampled_textures: 16, workgroup_bytes: 16384 };
+
+    /// The larger of each.
+    pub fn max(self, other: Needs) -> Needs {
+        Needs {
+            storage_buffers: self.storage_buffers.max(other.storage_buffers),
+            storage_textures: self.storage_textures.max(other.storage_textures),
+            sampled_textures: self.sampled_textures.max(other.sampled_textures),
+            workgroup_bytes: self.workgroup_bytes.max(other.workgroup_bytes),
+        }
+    }
+
+    /// Refuses what a device gives too little of. `shader` is who needs it.
+    pub(crate) fn check(&self, shader: &'static str, limits: &wgpu::Limits) -> Result<(), Error> {
+        let pairs = [
+            ("storage buffers", self.storage_buffers, limits.max_storage_buffers_per_shader_stage),
+            ("storage textures", self.storage_textures, limits.max_storage_textures_per_shader_stage),
+            ("textures", self.sampled_textures, limits.max_sampled_textures_per_shader_stage),
+            ("bytes of workgroup memory", self.workgroup_bytes, limits.max_compute_workgroup_storage_size),
+        ];
+        match pairs.into_iter().find(|(_, needed, given)| needed > given) {
+            None => Ok(()),
+            Some((what, needed, given)) => Err(Error::Limit { shader, what, needed, given }),
+        }
+    }
 }
 
 /// Group and slot of each resource, by the name of its variable.

@@ -1,6 +1,7 @@
 //! What a technique is, and the one list of techniques.
 
 use crate::settings::{Setting, Settings, SpecError, nearest, parse_values};
+use crate::shader::Needs;
 use crate::{Error, Frame, Gpu, recorder::Recorder, techniques::TECHNIQUES};
 use serde_json::{Map, Value};
 use std::pin::Pin;
@@ -12,6 +13,10 @@ pub trait Technique: wgpu::WasmNotSend {
 
     /// GPU memory that it owns, by the label of the pass that fills it.
     fn memory(&self) -> Vec<Memory>;
+
+    /// Keeps from the next [`Technique::record`] on, or no longer, what only people look at: inner pictures that the
+    /// visibility does not need, which cost time and memory.
+    fn look_inside(&mut self, _looked_at: bool) {}
 
     /// What it holds on the way to the visibility, for looking at: maps, pyramids, lists of pixels. Nothing before the
     /// first [`Technique::record`].
@@ -83,6 +88,20 @@ pub enum InnerContent {
         /// Which places there are, in this order, as in `shaders/penumbra_list.wesl`; needs `STORAGE`. None: all, row by row.
         list: Option<wgpu::Buffer>,
     },
+    /// A bit for each place of a square, as in `passes/silhouette`: rows of whole 32-bit words.
+    Mask {
+        /// The words; needs `STORAGE`.
+        bits: wgpu::Buffer,
+        /// Places a side.
+        side: u32,
+    },
+    /// How long the list of each texel of a square map is.
+    ListLengths {
+        /// Where each list ends, as in `shaders/texel_lists.wesl`; needs `STORAGE`.
+        ends: wgpu::Buffer,
+        /// Texels a side.
+        side: u32,
+    },
 }
 
 impl InnerPicture {
@@ -119,8 +138,20 @@ pub struct TechniqueInfo {
     pub settings: &'static [Setting],
     /// Its defaults where these settings are given: a preset among them changes others.
     pub defaults: fn(&Map<String, Value>) -> Value,
+    /// The most that a shader of it takes of what devices give a limited number of.
+    pub needs: Needs,
     /// Makes one from all its settings.
     pub make: MakeTechnique,
+}
+
+impl TechniqueInfo {
+    /// Refuses an adapter that cannot run it as it comes, with the error that it would meet there, before anything is
+    /// compiled.
+    pub fn check(&self, gpu: &Gpu) -> Result<(), Error> {
+        self.needs.check(self.name, &gpu.device.limits())?;
+        let map = (self.defaults)(&Map::new())["map"].as_u64().and_then(|map| u32::try_from(map).ok());
+        map.map_or(Ok(()), |map| gpu.check_size("shadow map", map, map))
+    }
 }
 
 /// A technique with its settings, as on the command line: `name:key=value,key=value`.
@@ -168,6 +199,8 @@ pub trait Describe: Technique + Sized + 'static {
     type Settings: Settings;
     /// Name on the command line, name for people, source, and what it does in one sentence.
     const ABOUT: About;
+    /// The most that a shader of it takes, if it is more than every WebGPU device gives.
+    const NEEDS: Needs = Needs::CORE;
 
     /// Its defaults where these settings are given. Techniques with presets start from the preset that is given.
     fn defaults(_given: &Map<String, Value>) -> Self::Settings {
@@ -198,6 +231,7 @@ pub(crate) const fn entry<T: Describe>() -> TechniqueInfo {
         source: T::ABOUT.source,
         summary: T::ABOUT.summary,
         settings: T::Settings::FIELDS,
+        needs: T::NEEDS,
         defaults: |given| serde_json::to_value(T::defaults(given)).expect("settings are plain data"),
         make: |gpu, value| {
             let settings = serde_json::from_value(value).map_err(|e| SpecError::Value {

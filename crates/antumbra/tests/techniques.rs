@@ -108,3 +108,30 @@ fn every_technique_says_what_it_is_and_what_memory_it_takes() {
         }
     }
 }
+
+/// What a technique says beforehand of its shaders is what they take: the least device that it says it needs is enough,
+/// and it asks for no more than that.
+#[test]
+fn every_technique_knows_what_its_shaders_take() {
+    let all = common::gpu();
+    // One surface has holes: its shaders look materials up.
+    let scene = common::builtin("plant");
+    let mut wrong = Vec::new();
+    for info in TECHNIQUES {
+        // With pipelines of its own.
+        let gpu = antumbra::Gpu::from_host(all.device.clone(), all.queue.clone());
+        let renderer = SceneRenderer::new(&gpu, &scene, [32, 32]).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+        let spec: antumbra::Spec = quick(info).parse().unwrap_or_else(|e| panic!("{e}"));
+        let mut made = spec.make(&gpu).unwrap_or_else(|e| panic!("{}: {e}", info.name));
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let recorded = renderer.record_shadow(&mut *made, &mut antumbra::Recorder::new(&gpu, &mut encoder));
+        recorded.unwrap_or_else(|e| panic!("{}: {e}", info.name));
+        let measured = gpu.needs().max(antumbra::shader::Needs::CORE);
+        // Other adapters take other ways, which may need less.
+        let is_known = if gpu.is_software() { measured == info.needs } else { measured.max(info.needs) == info.needs };
+        if !is_known {
+            wrong.push(format!("{} says {:?}, its shaders take {measured:?}", info.name, info.needs));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

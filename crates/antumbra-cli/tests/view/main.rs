@@ -34,9 +34,13 @@ fn a_session_at_the_window() {
         let state = window.settled();
         let drawn = state["drawn"][0].as_str().unwrap_or_default().to_owned();
         assert!(drawn.starts_with(technique.name), "{spec}: {state}");
-        // And what it lists can be looked into.
+        // And what it lists can be looked into, picture after picture.
         window.ask(json!({"inside": 0}));
-        window.settled();
+        let inner = window.settled()["inner"][0].take();
+        for name in inner.as_array().expect("a list") {
+            window.ask(json!({"inner": [name, 0]}));
+            window.settled();
+        }
         window.ask(json!({"inside": null}));
     }
     window.shot("techniques");
@@ -128,6 +132,14 @@ fn files_good_and_bad() {
         window.shot("message");
         window.ask(json!("dismiss"));
     }
+
+    // Where the desktop has no file dialog the window says so, and what to do instead; it goes on.
+    window.ask(json!("choose"));
+    let state = window.waited_for(|s| s["errors"][0].is_string());
+    let message = state["errors"][0].as_str().unwrap_or_default();
+    assert!(message.contains("no file dialog") && message.contains("drop the file"), "{message}");
+    window.shot("no-dialog");
+    window.ask(json!("dismiss"));
 
     // What is saved opens again.
     let saved = folder.path().join("saved.toml").display().to_string();

@@ -32,6 +32,8 @@ impl<'a> Window<'a> {
         let mut process = display
             .command(env!("CARGO_BIN_EXE_antumbra"))
             .args(["view", "--commands", "--size", "1000x640"])
+            // A desktop that has no file dialog to offer: no portal, and no program that shows one.
+            .envs([("DBUS_SESSION_BUS_ADDRESS", "unix:path=/nonexistent"), ("PATH", "")])
             .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

@@ -24,6 +24,9 @@ pub fn run<T, F: Future<Output = T>>(
     drop(started);
 }
 
+/// Jobs hold nothing up, and need not be cut.
+pub const HAS_THREADS: bool = true;
+
 /// The frame is drawn by another thread, which needs no turn from this one.
 pub async fn yield_to_frame() {}
 

@@ -1,10 +1,12 @@
 //! The window, and what a program on a computer has: threads and files.
 
+mod dialog;
 mod files;
 mod jobs;
 
+pub use dialog::choose_files;
 pub use files::{dropped, keep, load, load_dropped, write};
-pub use jobs::{run as run_job, workers, yield_to_frame};
+pub use jobs::{HAS_THREADS, run as run_job, workers, yield_to_frame};
 
 use crate::app::{App, Asked, Keep, Kept};
 use crate::commands::Answer;

@@ -27,6 +27,8 @@ use eframe::egui_wgpu::RenderState;
 pub struct Wishes {
     /// To open a scene.
     pub open: Option<Source>,
+    /// To be asked for a file by the desktop's or the browser's dialog.
+    pub choose: bool,
     /// To take something away.
     pub save: Option<Save>,
 }
@@ -46,6 +48,15 @@ pub enum Save {
     Command(usize),
 }
 
+/// What hints tell of.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Known {
+    /// That the scene can be turned, panned and zoomed.
+    pub moving: bool,
+    /// That the line between the halves can be dragged.
+    pub dividing: bool,
+}
+
 /// What the controls remember from frame to frame and nobody else needs.
 #[derive(Default)]
 pub struct Memory {
@@ -55,6 +66,8 @@ pub struct Memory {
     pub grab: Option<Grab>,
     /// The path that is being typed.
     pub path: String,
+    /// What the user has found out already, so that it need not be said any more.
+    pub known: Known,
     /// Where the picture is on the screen, points.
     pub area: Option<egui::Rect>,
     /// Textures of the pictures as egui knows them, and for which sizes.
@@ -88,7 +101,9 @@ pub fn show(
     egui::CentralPanel::no_frame().show(ui, |ui| {
         picture::show(ui, render, desk, session, memory);
         if let Some(area) = memory.area {
-            overlay::show(ui, area, desk, session);
+            // Messages are where hints are.
+            let moving = memory.known.moving || !memory.notices.is_empty();
+            overlay::show(ui, area, desk, session, &Known { moving, ..memory.known });
         }
     });
     inside::show(ui.ctx(), render, desk, session, memory);

@@ -37,6 +37,11 @@ impl Notices {
         self.list.iter().filter(|n| n.is_error).map(|n| n.text.as_str())
     }
 
+    /// True if nothing is on the screen.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
     /// Takes everything away.
     pub fn clear(&mut self) {
         self.list.clear();

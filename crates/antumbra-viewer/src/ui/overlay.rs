@@ -1,14 +1,15 @@
 //! What is written over the picture: which technique is where, what it costs, how far it is off; the colour bar.
 
-use super::{numbers, panel, style};
+use super::{Known, numbers, panel, style};
 use crate::desk::{Compare, Desk};
 use crate::session::Session;
 use crate::show::Show;
+use crate::truth::{Progress, Truth};
 use antumbra_metrics::{HEAT_SCALE, heat_color};
 use eframe::egui::{self, Align2, Color32, FontId, Pos2, Rect, RichText, pos2, vec2};
 
-/// Labels in the upper corners, and the colour bar below where errors are shown.
-pub fn show(ui: &mut egui::Ui, area: Rect, desk: &mut Desk, session: &mut Session) {
+/// Labels in the upper corners, the colour bar below where errors are shown, and hints until they are known.
+pub fn show(ui: &mut egui::Ui, area: Rect, desk: &mut Desk, session: &mut Session, known: &Known) {
     // A window may be as small as a title bar.
     if area.width() < 60.0 || area.height() < 60.0 {
         return;
@@ -29,7 +30,31 @@ pub fn show(ui: &mut egui::Ui, area: Rect, desk: &mut Desk, session: &mut Sessio
         }
     }
     if desk.show == Show::Error {
-        color_bar(ui, area);
+        color_bar(ui, area, session);
+    }
+    if session.stage.is_some() {
+        hints(ui, area, desk, known);
+    }
+}
+
+/// What the mouse does here, for those who have not moved anything yet.
+fn hints(ui: &egui::Ui, area: Rect, desk: &Desk, known: &Known) {
+    let hint = |at: Pos2, pivot: Align2, text: &str| {
+        let most = (area.width() - 40.0).max(60.0);
+        let painter = ui.painter_at(area);
+        let galley = painter.layout(text.to_owned(), FontId::proportional(12.5), style::ON_PICTURE, most);
+        let place = pivot.anchor_size(at, galley.size());
+        painter.rect_filled(place.expand2(vec2(9.0, 4.0)), 5.0, style::SHADE);
+        painter.galley(place.min, galley, style::ON_PICTURE);
+    };
+    if !known.moving {
+        let above = if desk.show == Show::Error { 92.0 } else { 16.0 };
+        let text = "drag: turn      wheel or pinch: zoom      right drag: move      F1: all keys";
+        hint(area.center_bottom() - vec2(0.0, above), Align2::CENTER_BOTTOM, text);
+    }
+    if desk.compare != Compare::One && !known.dividing && area.height() > 240.0 {
+        let middle = pos2(area.left() + area.width() * desk.divider, area.center().y + 26.0);
+        hint(middle, Align2::CENTER_TOP, "drag the line");
     }
 }
 
@@ -47,8 +72,9 @@ fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: us
     ui.set_max_width(280.0);
     let choice = &mut desk.choices[half];
     let name = RichText::new(choice.technique.name).strong().size(15.0).color(style::ON_PICTURE);
-    let button = egui::Button::new((name, egui::containers::menu::SubMenuButton::arrow_atom(None))).frame(false);
-    let menu = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| panel::pick(ui, choice));
+    let button = egui::Button::new((name, egui::containers::menu::SubMenuButton::arrow_atom(None)));
+    let gpu = &session.gpu;
+    let menu = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| panel::pick(ui, choice, gpu));
     menu.0.on_hover_text("Another technique");
     ui.label(RichText::new(choice.technique.title).small().color(Color32::from_gray(190)));
     let state = &mut session.halves[half];
@@ -84,29 +110,32 @@ fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: us
 
 fn truth(ui: &mut egui::Ui, session: &Session) {
     ui.label(RichText::new("Ray-traced truth").strong().size(15.0).color(style::ON_PICTURE));
-    let text = match &session.truth {
-        None => "waits until everything rests".to_owned(),
-        Some(truth) if truth.is_preparing() => "sorting triangles for rays …".to_owned(),
-        Some(truth) => truth.picture.lock().map_or_else(
-            |_| String::new(),
-            |p| match p.done() {
-                done if done < 1.0 => format!("{:>3.0} %   {} rays a pixel", 100.0 * done, p.rays()),
-                _ => "1024 rays a pixel".to_owned(),
-            },
-        ),
-    };
-    ui.label(RichText::new(text).small().color(Color32::from_gray(190)));
+    let (text, color) = progress(session);
+    ui.set_max_width(280.0);
+    ui.add(egui::Label::new(RichText::new(text).small().color(color)).wrap());
 }
 
-fn color_bar(ui: &egui::Ui, area: Rect) {
+/// How far the truth is, and in what colour that is said.
+fn progress(session: &Session) -> (String, Color32) {
+    match session.truth.as_ref().map(Truth::progress) {
+        None => ("waits until everything rests".to_owned(), Color32::from_gray(190)),
+        Some(died @ Progress::Died(_)) => (died.to_string(), style::BAD),
+        Some(other) => (other.to_string(), Color32::from_gray(190)),
+    }
+}
+
+fn color_bar(ui: &egui::Ui, area: Rect, session: &Session) {
     let painter = ui.painter_at(area);
     let size = vec2(220.0f32.min(area.width() * 0.5), 12.0);
     let bar = Rect::from_center_size(pos2(area.center().x, area.bottom() - 38.0), size);
-    painter.rect_filled(
-        bar.expand2(vec2(34.0, 7.0)).translate(vec2(0.0, 8.0)).expand2(vec2(0.0, 9.0)),
-        5.0,
-        style::SHADE,
-    );
+    let card = bar.expand2(vec2(34.0, 7.0)).translate(vec2(0.0, 8.0)).expand2(vec2(0.0, 9.0));
+    painter.rect_filled(card, 5.0, style::SHADE);
+    let (text, color) = progress(session);
+    let most = (area.width() - 40.0).max(60.0);
+    let galley = painter.layout(format!("the truth: {text}"), FontId::proportional(11.0), color, most);
+    let place = Align2::CENTER_BOTTOM.anchor_size(card.center_top() - vec2(0.0, 6.0), galley.size());
+    painter.rect_filled(place.expand2(vec2(8.0, 3.0)), 4.0, style::SHADE);
+    painter.galley(place.min, galley, color);
     let steps = 64;
     for i in 0..steps {
         let part = |k: i32| bar.left() + bar.width() * k as f32 / steps as f32;

@@ -4,6 +4,8 @@ use super::{Wishes, controls, numbers, sky, style};
 use crate::choice::Choice;
 use crate::desk::{Compare, Desk, Inside};
 use crate::session::Session;
+use crate::truth::Progress;
+use antumbra::Gpu;
 use antumbra::techniques::TECHNIQUES;
 use eframe::egui::{self, RichText};
 
@@ -40,7 +42,7 @@ fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: us
         .height(480.0)
         .truncate()
         .selected_text(title(choice.technique))
-        .show_ui(ui, |ui| pick(ui, choice));
+        .show_ui(ui, |ui| pick(ui, choice, &session.gpu));
     ui.add(
         egui::Label::new(
             RichText::new(format!("{}: {}", choice.technique.source, choice.technique.summary)).weak().small(),
@@ -74,16 +76,22 @@ fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: us
     numbers::show(ui, session, half);
 }
 
-/// The list of techniques.
-pub fn pick(ui: &mut egui::Ui, choice: &mut Choice) {
+/// The list of techniques. What this adapter cannot run is there too, and says why.
+pub fn pick(ui: &mut egui::Ui, choice: &mut Choice, gpu: &Gpu) {
     for technique in TECHNIQUES {
         let is_chosen = technique.name == choice.technique.name;
+        let refused = technique.check(gpu).err();
         let text = format!("{}  ·  {}", technique.name, technique.title);
-        let item = ui.selectable_label(is_chosen, text).on_hover_ui(|ui| {
+        let button = egui::Button::selectable(is_chosen, text);
+        let about = |ui: &mut egui::Ui| {
             ui.set_max_width(300.0);
+            if let Some(why) = &refused {
+                ui.colored_label(style::BAD, format!("Not on this adapter: {why}."));
+            }
             ui.strong(technique.source);
             ui.label(technique.summary);
-        });
+        };
+        let item = ui.add_enabled(refused.is_none(), button).on_hover_ui(about).on_disabled_hover_ui(about);
         if item.clicked() && !is_chosen {
             *choice = Choice::new(technique);
         }
@@ -96,22 +104,18 @@ fn truth(ui: &mut egui::Ui, session: &Session) {
         ui.weak("traced once camera, light and occluders rest");
         return;
     };
-    if truth.is_preparing() {
-        ui.weak("sorting triangles for rays …");
-        return;
-    }
-    if let Ok(picture) = truth.picture.lock() {
-        if let Some(died) = &picture.died {
-            ui.colored_label(style::BAD, died.to_string());
+    let progress = truth.progress();
+    let done = match &progress {
+        Progress::Died(_) => {
+            ui.colored_label(style::BAD, progress.to_string());
+            return;
         }
-        let done = picture.done();
-        let text = if done < 1.0 {
-            format!("{} rays a pixel, {:.0} %", picture.rays(), 100.0 * done)
-        } else {
-            "1024 rays a pixel, done".to_owned()
-        };
-        ui.add(egui::ProgressBar::new(done).text(RichText::new(text).small()).desired_height(14.0));
-    }
+        Progress::Preparing => 0.0,
+        Progress::Tracing { done, .. } => *done,
+        Progress::Done => 1.0,
+    };
+    let text = RichText::new(progress.to_string()).small();
+    ui.add(egui::ProgressBar::new(done).text(text).desired_height(14.0));
 }
 
 fn drawing(ui: &mut egui::Ui, desk: &mut Desk, session: &Session) {

@@ -122,12 +122,18 @@ fn pointer(
     if let (Some(grab), Some(at)) = (memory.grab, response.interact_pointer_pos()) {
         let largest = session.stage.as_ref().map_or(100.0, |s| s.bounds.size().length());
         match grab {
-            Grab::Divider => desk.divider = ((at.x - area.left()) / area.width()).clamp(0.02, 0.98),
+            Grab::Divider => {
+                memory.known.dividing = true;
+                desk.divider = ((at.x - area.left()) / area.width()).clamp(0.02, 0.98);
+            }
             Grab::Light(handle, light, start) => {
                 desk.light = light::dragged(&light, handle, screen, start, vec(at), largest);
             }
             Grab::Sun => desk.light = light::swung(&desk.light, Vec2::new(moved.x, -moved.y) * TURN),
-            Grab::View => move_view(ui, response, desk, moved),
+            Grab::View => {
+                memory.known.moving |= moved != egui::Vec2::ZERO;
+                move_view(ui, response, desk, moved);
+            }
         }
     }
     if let Some(at) = response.hover_pos() {
@@ -140,6 +146,7 @@ fn pointer(
         let (scroll, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let factor = pinch * (0.0025 * scroll).exp();
         if factor != 1.0 {
+            memory.known.moving = true;
             camera::zoom(&mut desk.camera, factor, radius(session));
         }
     }

@@ -16,6 +16,9 @@ pub fn run<T, F: Future<Output = T> + 'static>(
     });
 }
 
+/// Jobs hold up the frame where they are not cut.
+pub const HAS_THREADS: bool = false;
+
 /// Goes on after the browser had its turn: input, a frame, other jobs.
 pub async fn yield_to_frame() {
     let turn = Promise::new(&mut |resolve, _| {

@@ -5,11 +5,13 @@
 //! [command](crate::commands) as an object and gives a promise of its answer.
 
 mod asking;
+mod dialog;
 mod files;
 mod jobs;
 
+pub use dialog::choose_files;
 pub use files::{dropped, keep, load, load_dropped, write};
-pub use jobs::{run as run_job, workers, yield_to_frame};
+pub use jobs::{HAS_THREADS, run as run_job, workers, yield_to_frame};
 
 use crate::app::{App, Keep, Kept};
 use crate::commands::Command;

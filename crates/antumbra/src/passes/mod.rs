@@ -15,6 +15,7 @@ pub mod light_maps;
 pub mod light_triangles;
 pub mod moments;
 pub mod patch_pyramid;
+pub mod penumbra_widths;
 pub mod picture;
 pub mod scan;
 pub mod silhouette;

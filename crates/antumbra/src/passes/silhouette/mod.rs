@@ -8,7 +8,7 @@ use crate::passes::summed_area::SummedArea;
 use crate::recorder::Recorder;
 use crate::resource::{storage_buffer, uniform};
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::Memory;
+use crate::technique::{InnerContent, InnerPicture, Memory};
 use crate::{Error, Gpu, bindings, gpu_struct};
 use glam::Mat4;
 
@@ -130,6 +130,15 @@ impl SilhouetteMask {
         let edges = words(crate::resource::read_buffer(gpu, &self.counters).await?)[0];
         let texels = words(crate::resource::read_buffer(gpu, &self.texels).await?);
         Ok([u64::from(edges), texels.iter().map(|w| u64::from(w.count_ones())).sum()])
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        InnerPicture {
+            name: "silhouette mask",
+            help: "texels of the map from the light's centre that a silhouette passes, or a surface with holes",
+            content: InnerContent::Mask { bits: self.texels.clone(), side: self.size },
+        }
     }
 
     /// GPU memory by pass.

@@ -7,7 +7,7 @@ use crate::pipeline::Binding;
 use crate::recorder::{Recorder, Work};
 use crate::resource::{storage_buffer, uniform};
 use crate::shader::ShaderKey;
-use crate::technique::Memory;
+use crate::technique::{InnerContent, InnerPicture, Memory};
 use crate::{Error, Gpu, bindings, gpu_struct};
 
 gpu_struct! {
@@ -110,6 +110,15 @@ impl TexelLists {
     /// The shader that lists, with the module that says what a receiver covers.
     pub fn key(part: &'static str) -> ShaderKey {
         ShaderKey::new("passes::texel_lists::lists").part("listed", part)
+    }
+
+    /// For looking at.
+    pub fn inner_picture(&self) -> InnerPicture {
+        InnerPicture {
+            name: "lists of receivers",
+            help: "how many receivers are listed in each texel of the map from the light's centre",
+            content: InnerContent::ListLengths { ends: self.ends.clone(), side: self.size },
+        }
     }
 
     /// GPU memory by pass.

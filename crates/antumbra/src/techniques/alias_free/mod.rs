@@ -10,8 +10,8 @@ use crate::passes::triangle_pairs::{Look, TrianglePairs};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
 use crate::resource::{UniformArray, storage_buffer};
-use crate::shader::ShaderKey;
-use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
+use crate::shader::{Needs, ShaderKey};
+use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
 use std::sync::Arc;
 
@@ -79,6 +79,9 @@ impl Describe for AliasFree {
         summary: "the exact hard shadow of every pixel: triangles against lists of pixels; the light is a point at its centre",
     };
 
+    // Lists, pairs and receivers, and for surfaces with holes the host's triangles.
+    const NEEDS: Needs = Needs { storage_buffers: 9, ..Needs::CORE };
+
     fn make(gpu: &Gpu, settings: AliasFreeSettings) -> Result<Self, Error> {
         let key = ShaderKey::new("techniques::alias_free::resolve").with::<FrameUniform>().with::<SampleUniform>();
         let count = settings.samples;
@@ -134,6 +137,10 @@ impl Technique for AliasFree {
             self.sub_pixels = Some(sub_pixels);
         }
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        self.lists.iter().map(TexelLists::inner_picture).collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

@@ -25,6 +25,15 @@ pub(crate) struct Placed {
     pub rows: Vec<u32>,
 }
 
+impl Placed {
+    /// The points in the square.
+    pub fn points(&self, lattice: &Lattice) -> Vec<DVec2> {
+        let rows = self.rows.iter().enumerate();
+        let set = rows.flat_map(|(j, row)| (0..32).filter(move |i| row >> i & 1 != 0).map(move |i| (i, j)));
+        set.map(|(i, j)| self.origin + lattice.basis * DVec2::new(f64::from(i), j as f64)).collect()
+    }
+}
+
 impl Lattice {
     /// The lattice i (1, g) / points, modulo 1, whose shortest vector is longest among those that fit the mask.
     pub fn new(points: u32) -> Lattice {
@@ -95,12 +104,7 @@ mod tests {
                 let by = (DVec2::new(0.754_877_666, 0.569_840_296) * f64::from(k) + 0.5 / f64::from(points)).fract();
                 let placed = lattice.placed(by);
                 assert!(placed.rows.len() <= MOST_ROWS, "{} rows", placed.rows.len());
-                let mut all = Vec::new();
-                for (j, row) in placed.rows.iter().enumerate() {
-                    for i in (0..32).filter(|i| row >> i & 1 != 0) {
-                        all.push(placed.origin + lattice.basis * DVec2::new(f64::from(i), j as f64));
-                    }
-                }
+                let all = placed.points(&lattice);
                 assert_eq!(all.len(), points as usize, "moved by {by}");
                 for axis in 0..2 {
                     let mut places: Vec<f64> = all.iter().map(|p| p[axis]).collect();

@@ -9,9 +9,9 @@ use crate::casters::BatchLayout;
 use crate::frame::FrameUniform;
 use crate::passes::light_triangles::{LightTriangles, Reach};
 use crate::recorder::{Recorder, Work, dispatch};
-use crate::resource::{UniformArray, buffer_of, uniform};
+use crate::resource::{UniformArray, buffer_of, storage_buffer, uniform};
 use crate::shader::{HostStruct, ShaderKey};
-use crate::technique::{About, Describe, Memory, Technique};
+use crate::technique::{About, Describe, InnerContent, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct, settings::Kind};
 use glam::{DVec2, Vec2, Vec4};
 use lattice::{Lattice, MOST_POINTS, MOST_ROWS};
@@ -82,6 +82,37 @@ pub struct AliasFreeSoft {
     /// What lies between several looks.
     between: Option<Between>,
     looks: Option<UniformArray<TriangleLook>>,
+    is_looked_at: bool,
+    effort: Option<Effort>,
+}
+
+/// What each pixel has taken and found; kept only while people look at it.
+struct Effort {
+    size: [u32; 2],
+    /// Triangles that were taken from the light's points, and points that are hidden: two floats a pixel.
+    numbers: wgpu::Buffer,
+}
+
+impl Effort {
+    /// Room in `slot` if `wanted`; none if not.
+    fn ensure<'a>(slot: &'a mut Option<Effort>, gpu: &Gpu, size: [u32; 2], wanted: bool) -> Option<&'a Effort> {
+        if !wanted {
+            *slot = None;
+        } else if slot.as_ref().is_none_or(|e| e.size != size) {
+            let bytes = u64::from(size[0]) * u64::from(size[1]) * 8;
+            *slot = Some(Effort { size, numbers: storage_buffer(gpu, "triangles of pixels", bytes) });
+        }
+        slot.as_ref()
+    }
+
+    fn inner_picture(&self) -> InnerPicture {
+        let numbers = self.numbers.clone();
+        InnerPicture {
+            name: "triangles and hidden points",
+            help: "how many triangles each pixel has taken from the light's points; how many of the points are hidden",
+            content: InnerContent::Numbers { numbers, stride: 2, channels: 2, size: self.size, list: None },
+        }
+    }
 }
 
 impl Describe for AliasFreeSoft {
@@ -99,11 +130,7 @@ impl Describe for AliasFreeSoft {
         let places = if settings.points == Points::Moved { PLACEMENTS } else { 1 };
         let (mut placements, mut rows) = (Vec::new(), Vec::<u32>::new());
         for k in 0..places {
-            // Evenly over a cell of the lattice's period [Roberts 2018, "R2"].
-            let by = (DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3) * f64::from(k)
-                + 0.5 / f64::from(count))
-            .fract();
-            let placed = lattice.placed(by);
+            let placed = lattice.placed(place_of(k, count));
             let center = lattice.basis.inverse() * (DVec2::splat(0.5) - placed.origin);
             placements.push(Vec4::new(center.x as f32, center.y as f32, placed.rows.len() as f32, 0.0));
             rows.extend(placed.rows.iter().copied().chain(std::iter::repeat(0)).take(MOST_ROWS));
@@ -118,8 +145,16 @@ impl Describe for AliasFreeSoft {
             triangles: None,
             between: None,
             looks: None,
+            is_looked_at: false,
+            effort: None,
         })
     }
+}
+
+/// How the `k`-th lattice is moved: evenly over a cell of its period [Roberts 2018, "R2"].
+fn place_of(k: u32, points: u32) -> DVec2 {
+    let step = DVec2::new(0.754_877_666_246_692_7, 0.569_840_290_998_053_3);
+    (step * f64::from(k) + 0.5 / f64::from(points)).fract()
 }
 
 impl AliasFreeSoft {
@@ -154,6 +189,10 @@ impl Technique for AliasFreeSoft {
             .collect();
         let uniforms = UniformArray::ensure(&mut self.looks, gpu, "looks", &looks);
         let between = Between::ensure(&mut self.between, gpu, frame.geometry.size, &looks);
+        let effort = Effort::ensure(&mut self.effort, gpu, frame.geometry.size, self.is_looked_at);
+        if let Some(effort) = effort {
+            recorder.encoder.clear_buffer(&effort.numbers, 0, None);
+        }
         for (i, look) in looks.iter().enumerate() {
             let part = &parts[look.part as usize];
             if look.look == 0 {
@@ -163,6 +202,7 @@ impl Technique for AliasFreeSoft {
             let key = ShaderKey::new("techniques::alias_free_soft::soften")
                 .feature("masked", batch.is_some())
                 .feature("parts", between.is_some())
+                .feature("looked_at", effort.is_some())
                 .with::<FrameUniform>()
                 .with::<BatchLayout>()
                 .with::<LatticeUniform>()
@@ -178,6 +218,9 @@ impl Technique for AliasFreeSoft {
                 cluster_length: &triangles.cluster_length.0,
                 soft: &soft,
             });
+            if let Some(effort) = effort {
+                set.extend_from_slice(bindings! { effort: &effort.numbers });
+            }
             let mut work = Work::Groups([frame.geometry.size[0].div_ceil(8), frame.geometry.size[1].div_ceil(8), 1]);
             if let Some(between) = between {
                 let next = between.next_look(recorder, look.look);
@@ -202,9 +245,22 @@ impl Technique for AliasFreeSoft {
         Ok(())
     }
 
+    fn look_inside(&mut self, looked_at: bool) {
+        self.is_looked_at = looked_at;
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let placed = self.lattice.placed(place_of(0, self.settings.samples)).points(&self.lattice);
+        let points: Vec<Vec2> = placed.iter().map(|p| (*p - 0.5).as_vec2()).collect();
+        let help = "points of the light that triangles are taken from; with `points=moved` those of one pixel in 64";
+        let points = InnerPicture { help, ..InnerPicture::of_light_points(&points) };
+        [points].into_iter().chain(self.effort.iter().map(Effort::inner_picture)).collect()
+    }
+
     fn memory(&self) -> Vec<Memory> {
-        let between = self.between.as_ref().map_or(0, Between::bytes);
-        let own = Memory::new("visibility", between + self.rows.size() + self.placements.size());
+        let kept =
+            self.between.as_ref().map_or(0, Between::bytes) + self.effort.as_ref().map_or(0, |e| e.numbers.size());
+        let own = Memory::new("visibility", kept + self.rows.size() + self.placements.size());
         self.triangles.iter().map(LightTriangles::memory).chain([own]).collect()
     }
 }

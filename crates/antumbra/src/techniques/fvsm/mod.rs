@@ -3,6 +3,7 @@
 use super::pvssm::{Pvssm, PvssmSettings, Rho};
 use crate::frame::PointFrame;
 use crate::recorder::Recorder;
+use crate::shader::Needs;
 use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu};
 use serde_json::{Map, Value};
@@ -21,6 +22,8 @@ impl Describe for Fvsm {
         source: "Giegl 2007",
         summary: "hard shadows with a texel a pixel, however large the scene; antialiased over the pixel's footprint",
     };
+
+    const NEEDS: Needs = Pvssm::NEEDS;
 
     fn defaults(_given: &Map<String, Value>) -> PvssmSettings {
         PvssmSettings { rho: Rho::Fitted, ..PvssmSettings::default() }

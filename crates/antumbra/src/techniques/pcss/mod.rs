@@ -6,6 +6,7 @@ use crate::passes::{
     classify::{Listing, PenumbraList},
     depth_map::DepthMap,
     depth_pyramid::DepthPyramid,
+    penumbra_widths::PenumbraWidths,
 };
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
@@ -40,10 +41,12 @@ pub struct Pcss {
     antialias: bool,
     settings: PcssSettings,
     soften: Arc<ComputePipeline>,
+    is_looked_at: bool,
     uniform: wgpu::Buffer,
     map: Option<DepthMap>,
     pyramid: Option<DepthPyramid>,
     list: Option<PenumbraList>,
+    widths: Option<PenumbraWidths>,
 }
 
 impl Describe for Pcss {
@@ -63,21 +66,25 @@ impl Describe for Pcss {
 impl Pcss {
     /// Filters over the pixel's footprint too if `antialias`.
     pub(super) fn with_antialias(gpu: &Gpu, settings: PcssSettings, antialias: bool) -> Result<Self, Error> {
-        let key = ShaderKey::new("techniques::pcss::soften")
-            .feature("antialias", antialias)
-            .with::<FrameUniform>()
-            .with::<PcssUniform>();
         let value = PcssUniform { search: settings.search as f32, filter_width: settings.filter as f32 };
         Ok(Pcss {
             antialias,
-            soften: gpu.compute_pipeline(&key, "soften")?,
+            soften: gpu.compute_pipeline(&soften_key(antialias), "soften")?,
+            is_looked_at: false,
             uniform: uniform(gpu, "pcss", &value),
             settings,
             map: None,
             pyramid: None,
             list: None,
+            widths: None,
         })
     }
+}
+
+/// Search and filter.
+fn soften_key(antialias: bool) -> ShaderKey {
+    let key = ShaderKey::new("techniques::pcss::soften").feature("antialias", antialias);
+    key.with::<FrameUniform>().with::<PcssUniform>()
 }
 
 impl Technique for Pcss {
@@ -88,21 +95,32 @@ impl Technique for Pcss {
         let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
         pyramid.record(recorder, map, frame.frustum.near)?;
         list.record(recorder, frame, map, pyramid, Listing { trust_dark: true, footprints: self.antialias })?;
-        let set = frame.bindings(bindings! {
+        let widths = PenumbraWidths::ensure(&mut self.widths, gpu, list, self.is_looked_at);
+        let mut set = frame.bindings(bindings! {
             depth_map: &map.texture,
             pyramid_bounds: &pyramid.bounds,
             pyramid_layers: &pyramid.layers,
             penumbra_pixels: &list.buffer,
             pcss: &self.uniform,
         });
-        recorder.compute("blocker search and filter", &self.soften, &set, Work::Indirect(&list.buffer, 0));
+        let mut soften = self.soften.clone();
+        if let Some(widths) = widths {
+            set.extend_from_slice(bindings! { penumbra_widths: &widths.buffer });
+            soften = gpu.compute_pipeline(&soften_key(self.antialias).feature("widths", true), "soften")?;
+        }
+        recorder.compute("blocker search and filter", &soften, &set, Work::Indirect(&list.buffer, 0));
         Ok(())
+    }
+
+    fn look_inside(&mut self, looked_at: bool) {
+        self.is_looked_at = looked_at;
     }
 
     fn inner_pictures(&self) -> Vec<InnerPicture> {
         let map = self.map.iter().map(DepthMap::inner_picture);
         map.chain(self.pyramid.iter().flat_map(DepthPyramid::inner_pictures))
             .chain(self.list.iter().map(PenumbraList::inner_picture))
+            .chain(self.list.iter().zip(&self.widths).map(|(list, widths)| widths.inner_picture(list)))
             .collect()
     }
 
@@ -110,6 +128,7 @@ impl Technique for Pcss {
         let map = self.map.iter().flat_map(DepthMap::memory);
         map.chain(self.pyramid.iter().map(DepthPyramid::memory))
             .chain(self.list.iter().map(PenumbraList::memory))
+            .chain(self.widths.iter().map(PenumbraWidths::memory))
             .collect()
     }
 }

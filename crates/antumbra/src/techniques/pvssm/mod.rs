@@ -20,6 +20,7 @@ pub use settings::{Decision, PvssmSettings, Rho};
 use crate::passes::light_maps::Drawn;
 use crate::recorder::Recorder;
 use crate::settings::SpecError;
+use crate::shader::Needs;
 use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, gpu_struct};
 use analysis::Analysis;
@@ -103,6 +104,9 @@ impl Describe for Pvssm {
         source: "Shen 2011",
         summary: "tiles of as many texels as each penumbra needs; antialiased; for scenes of any size, near and far",
     };
+
+    // One workgroup decides on all tiles, in the memory that its threads share.
+    const NEEDS: Needs = Needs { workgroup_bytes: 19584, ..Needs::CORE };
 
     fn make(gpu: &Gpu, settings: PvssmSettings) -> Result<Self, Error> {
         Pvssm::new(gpu, Self::ABOUT.name, settings)

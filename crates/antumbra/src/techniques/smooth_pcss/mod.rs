@@ -29,6 +29,10 @@ impl Technique for SmoothPcss {
         self.0.record(frame, recorder)
     }
 
+    fn look_inside(&mut self, looked_at: bool) {
+        self.0.look_inside(looked_at);
+    }
+
     fn inner_pictures(&self) -> Vec<InnerPicture> {
         self.0.inner_pictures()
     }

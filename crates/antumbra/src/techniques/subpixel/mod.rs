@@ -27,7 +27,7 @@ use crate::pipeline::{Binding, ComputePipeline};
 use crate::recorder::{Recorder, Work};
 use crate::resource::{Texture, UniformArray, buffer_of, read_buffer, storage_buffer, uniform};
 use crate::shader::ShaderKey;
-use crate::technique::{About, Describe, FiguresFuture, Memory, Technique};
+use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
 use crate::{Error, Frame, Gpu, bindings, gpu_struct};
 use glam::UVec4;
 use lists::{Room, StripUniform};
@@ -230,6 +230,13 @@ impl Technique for Subpixel {
         }
         self.room.learn(recorder);
         Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        let map = self.map.iter().map(DepthMap::inner_picture);
+        map.chain(self.silhouettes.iter().map(SilhouetteMask::inner_picture))
+            .chain(self.lists.iter().map(TexelLists::inner_picture))
+            .collect()
     }
 
     fn memory(&self) -> Vec<Memory> {

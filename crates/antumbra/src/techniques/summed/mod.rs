@@ -7,6 +7,7 @@ use crate::passes::classify::{Listing, PenumbraList};
 use crate::passes::depth_pyramid::DepthPyramid;
 use crate::passes::light_depth::LightDepth;
 use crate::passes::moments::{DepthWarp, Nearest};
+use crate::passes::penumbra_widths::PenumbraWidths;
 use crate::passes::summed_area::{SummedArea, Sums, TableShape};
 use crate::pipeline::ComputePipeline;
 use crate::recorder::{Recorder, Work};
@@ -58,12 +59,14 @@ gpu_struct! {
 pub struct Summed<S: Soft> {
     plan: Plan,
     soften: Arc<ComputePipeline>,
+    is_looked_at: bool,
     warp: wgpu::Buffer,
     soft: wgpu::Buffer,
     depth: Option<LightDepth>,
     pyramid: Option<DepthPyramid>,
     list: Option<PenumbraList>,
     table: Option<SummedArea>,
+    widths: Option<PenumbraWidths>,
     technique: PhantomData<fn() -> S>,
 }
 
@@ -73,14 +76,9 @@ impl<S: Soft> Describe for Summed<S> {
 
     fn make(gpu: &Gpu, settings: S::Settings) -> Result<Self, Error> {
         let plan = S::plan(&settings);
-        let key = ShaderKey::new("techniques::summed::soften")
-            .part("soft", S::SOFT)
-            .feature("fixed", plan.table.sums == Sums::Fixed)
-            .with::<FrameUniform>()
-            .with::<DepthWarp>()
-            .with::<SoftUniform>();
         Ok(Summed {
-            soften: gpu.compute_pipeline(&key, "soften")?,
+            soften: gpu.compute_pipeline(&soften_key::<S>(&plan), "soften")?,
+            is_looked_at: false,
             warp: uniform(gpu, "depth warp", &plan.warp),
             soft: uniform(gpu, "soft", &plan.soft),
             plan,
@@ -88,9 +86,20 @@ impl<S: Soft> Describe for Summed<S> {
             pyramid: None,
             list: None,
             table: None,
+            widths: None,
             technique: PhantomData,
         })
     }
+}
+
+/// The lookup.
+fn soften_key<S: Soft>(plan: &Plan) -> ShaderKey {
+    ShaderKey::new("techniques::summed::soften")
+        .part("soft", S::SOFT)
+        .feature("fixed", plan.table.sums == Sums::Fixed)
+        .with::<FrameUniform>()
+        .with::<DepthWarp>()
+        .with::<SoftUniform>()
 }
 
 impl<S: Soft> Technique for Summed<S> {
@@ -109,7 +118,8 @@ impl<S: Soft> Technique for Summed<S> {
         pyramid.record(recorder, map, frame.frustum.near)?;
         list.record(recorder, frame, map, pyramid, Listing { trust_dark: true, ..Listing::default() })?;
         table.record(recorder, depth, S::WARP, &self.warp)?;
-        let set = frame.bindings(bindings! {
+        let widths = PenumbraWidths::ensure(&mut self.widths, gpu, list, self.is_looked_at);
+        let mut set = frame.bindings(bindings! {
             depth_map: &map.texture,
             pyramid_bounds: &pyramid.bounds,
             pyramid_layers: &pyramid.layers,
@@ -119,8 +129,17 @@ impl<S: Soft> Technique for Summed<S> {
             summed_table: &table.texture,
             table_means: &table.means,
         });
-        recorder.compute("soft lookup", &self.soften, &set, Work::Indirect(&list.buffer, 0));
+        let mut soften = self.soften.clone();
+        if let Some(widths) = widths {
+            set.extend_from_slice(bindings! { penumbra_widths: &widths.buffer });
+            soften = gpu.compute_pipeline(&soften_key::<S>(&self.plan).feature("widths", true), "soften")?;
+        }
+        recorder.compute("soft lookup", &soften, &set, Work::Indirect(&list.buffer, 0));
         Ok(())
+    }
+
+    fn look_inside(&mut self, looked_at: bool) {
+        self.is_looked_at = looked_at;
     }
 
     fn inner_pictures(&self) -> Vec<InnerPicture> {
@@ -128,6 +147,7 @@ impl<S: Soft> Technique for Summed<S> {
         map.chain(self.pyramid.iter().flat_map(DepthPyramid::inner_pictures))
             .chain(self.table.iter().map(SummedArea::inner_picture))
             .chain(self.list.iter().map(PenumbraList::inner_picture))
+            .chain(self.list.iter().zip(&self.widths).map(|(list, widths)| widths.inner_picture(list)))
             .collect()
     }
 
@@ -135,6 +155,7 @@ impl<S: Soft> Technique for Summed<S> {
         let map = self.depth.iter().flat_map(LightDepth::memory);
         let pyramid = self.pyramid.iter().map(DepthPyramid::memory);
         let list = self.list.iter().map(PenumbraList::memory);
-        map.chain(pyramid).chain(list).chain(self.table.iter().map(SummedArea::memory)).collect()
+        let widths = self.widths.iter().map(PenumbraWidths::memory);
+        map.chain(pyramid).chain(list).chain(self.table.iter().map(SummedArea::memory)).chain(widths).collect()
     }
 }

@@ -1,0 +1,94 @@
+//! The viewer's page in the browser: its commands, and what they answer.
+
+use crate::browser::Browser;
+use crate::{Outcome, PATIENCE};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// The page.
+pub struct Page {
+    /// Shows it.
+    pub browser: Browser,
+    /// Where it is served.
+    pub address: String,
+    /// Where screenshots go.
+    pub shots: PathBuf,
+}
+
+impl Page {
+    /// Opens it with a query, until it answers commands.
+    pub fn open(&mut self, query: &str) -> Outcome<()> {
+        self.browser.open(&format!("{}/{query}", self.address))?;
+        let ready = "!!window.antumbra?.ask && document.getElementById('cover').className != ''";
+        self.browser.wait_for(ready, PATIENCE)
+    }
+
+    /// The answer to a command.
+    pub fn ask(&mut self, command: &Value) -> Outcome<Value> {
+        let answer = self.browser.value(&format!("antumbra.ask({command})"))?;
+        match answer.get("error").and_then(Value::as_str) {
+            Some(error) => Err(format!("{command}: {error}")),
+            None => Ok(answer),
+        }
+    }
+
+    /// What is on the screen.
+    pub fn state(&mut self) -> Outcome<Value> {
+        Ok(self.ask(&json!("state"))?["state"].take())
+    }
+
+    /// Waits until nothing is under way.
+    pub fn rest(&mut self) -> Outcome<()> {
+        let browser = &mut self.browser;
+        browser.value("window.rested = false, antumbra.ask('wait').then(() => window.rested = true), 0")?;
+        let ended = "window.rested || document.getElementById('cover').className == 'failed'";
+        match browser.wait_for(ended, PATIENCE).and_then(|()| browser.value("window.rested")) {
+            Ok(Value::Bool(true)) => Ok(()),
+            Ok(_) => Err(format!("the page broke off:\n{}", browser.errors.join("\n"))),
+            Err(error) => Err(format!("{error}\n{}", browser.errors.join("\n"))),
+        }
+    }
+
+    /// What is on the screen once nothing is under way; nothing may have gone wrong.
+    pub fn settled(&mut self) -> Outcome<Value> {
+        self.rest()?;
+        let state = self.state()?;
+        let wrong = |key: &str| state[key].as_array().is_none_or(|list| list.iter().any(|e| !e.is_null()));
+        match ["errors", "faults", "failed"].into_iter().find(|key| wrong(key)) {
+            Some(key) => Err(format!("{key}: {}", state[key])),
+            None => Ok(state),
+        }
+    }
+
+    /// What is on the screen as soon as it is as wanted.
+    pub fn waited_for(&mut self, what: &str, wanted: impl Fn(&Value) -> bool) -> Outcome<Value> {
+        let start = Instant::now();
+        loop {
+            let state = self.state()?;
+            if wanted(&state) {
+                return Ok(state);
+            }
+            if start.elapsed() > PATIENCE {
+                return Err(format!("{what}: after {} s still {state}", PATIENCE.as_secs()));
+            }
+            std::thread::sleep(Duration::from_millis(100));
+        }
+    }
+
+    /// Keeps a picture of what is seen, and gives it.
+    pub fn shot(&mut self, name: &str) -> Outcome<Vec<u8>> {
+        let file = self.shots.join(format!("{name}.png"));
+        let png = self.browser.screenshot()?;
+        std::fs::write(&file, &png).map_err(|e| format!("{}: {e}", file.display()))?;
+        Ok(png)
+    }
+
+    /// Nothing may be on the console.
+    pub fn no_errors(&self) -> Outcome<()> {
+        match self.browser.errors.is_empty() {
+            true => Ok(()),
+            false => Err(format!("errors on the console:\n{}", self.browser.errors.join("\n"))),
+        }
+    }
+}
