@@ -101,7 +101,7 @@ mod tests {
         for points in (2..MOST_POINTS).step_by(7).chain([37, 64, 128, 255, 256, MOST_POINTS]) {
             let lattice = Lattice::new(points);
             for k in 0..16 {
-                let by = (DVec2::new(0.754_877_666, 0.569_840_296) * f64::from(k) + 0.5 / f64::from(points)).fract();
+                let by = super::super::place_of(k, points);
                 let placed = lattice.placed(by);
                 assert!(placed.rows.len() <= MOST_ROWS, "{} rows", placed.rows.len());
                 let all = placed.points(&lattice);

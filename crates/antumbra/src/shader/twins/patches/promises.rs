@@ -130,8 +130,9 @@ fn direction() -> impl Strategy<Value = DVec2> {
 struct Beyond {
     /// Above their node's top.
     top: f64,
-    /// Off their node's plane, more than its residual: texels that have always been of the nearer surface.
+    /// Off their node's plane, more than its residual: texels that have always been of the nearer surface, and others.
     residual: f64,
+    raised: f64,
 }
 
 fn beyond(map: &Map) -> Beyond {
@@ -144,10 +145,9 @@ fn beyond(map: &Map) -> Beyond {
             for t in node.near.iter().chain(&node.far).chain(&node.raised) {
                 beyond.top = beyond.top.max(t.q - p.top());
             }
-            for t in &node.near {
-                let off = t.q - p.near - p.slope.dot((t.at - middle) / width as f64);
-                beyond.residual = beyond.residual.max(off.abs() - p.residual);
-            }
+            let off = |t: &Texel| (t.q - p.near - p.slope.dot((t.at - middle) / width as f64)).abs() - p.residual;
+            beyond.residual = node.near.iter().map(off).fold(beyond.residual, f64::max);
+            beyond.raised = node.raised.iter().map(off).fold(beyond.raised, f64::max);
         }
     }
     beyond
@@ -175,6 +175,13 @@ proptest! {
     fn texels_keep_to_the_top_of_their_node_and_to_its_residual(map in any_map()) {
         let beyond = beyond(&map);
         prop_assert!(beyond.top < 1e-9 && beyond.residual < 1e-9, "{beyond:?}");
+    }
+
+    #[test]
+    #[ignore = "a farther surface that has become the nearer one is kept by its mean alone, and forgets its range"]
+    fn texels_of_a_raised_surface_keep_to_its_residual(map in any_map()) {
+        let beyond = beyond(&map);
+        prop_assert!(beyond.raised < 1e-9, "{beyond:?}");
     }
 
     #[test]
