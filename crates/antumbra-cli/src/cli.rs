@@ -3,8 +3,9 @@
 use crate::bench::{self, Suite};
 use crate::output::{ValuesFile, npy_path, png_path};
 use crate::study::rho;
-use antumbra::settings::SpecError;
-use antumbra::{AdapterChoice, Spec, techniques::TECHNIQUES};
+use antumbra::technique::settings::SpecError;
+use antumbra::techniques::TECHNIQUES;
+use antumbra::{AdapterChoice, Spec};
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -231,7 +232,7 @@ impl std::fmt::Debug for Technique {
 }
 
 impl FromStr for Technique {
-    type Err = antumbra::settings::SpecError;
+    type Err = antumbra::technique::settings::SpecError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let spec: Spec = with_files(text)?.parse()?;
@@ -264,7 +265,7 @@ fn with_files(text: &str) -> Result<String, SpecError> {
 pub struct Techniques(pub Vec<Technique>);
 
 impl FromStr for Techniques {
-    type Err = antumbra::settings::SpecError;
+    type Err = antumbra::technique::settings::SpecError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let all = || TECHNIQUES.iter().map(|t| t.name.parse()).collect();

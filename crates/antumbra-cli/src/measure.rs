@@ -2,7 +2,7 @@
 
 use crate::error::CliError;
 use crate::{progress, setup};
-use antumbra::recorder::PassTime;
+use antumbra::gpu::recorder::PassTime;
 use antumbra::scene::SceneRenderer;
 use antumbra::{Error, Gpu, Recorder, Spec, Technique, Timer};
 use pollster::block_on;

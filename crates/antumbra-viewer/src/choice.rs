@@ -1,7 +1,7 @@
 //! A technique with its settings as a person changes them one by one, and as a SPEC.
 
-use antumbra::settings::{Kind, Setting};
 use antumbra::technique::find;
+use antumbra::technique::settings::{Kind, Setting};
 use antumbra::{Spec, TechniqueInfo};
 use serde_json::{Map, Value};
 
@@ -33,7 +33,7 @@ impl Choice {
     }
 
     /// The technique of this name as it comes.
-    pub fn named(name: &str) -> Result<Choice, antumbra::settings::SpecError> {
+    pub fn named(name: &str) -> Result<Choice, antumbra::technique::settings::SpecError> {
         find(name).map(Choice::new)
     }
 

@@ -2,7 +2,7 @@
 
 use crate::readback::Readback;
 use antumbra::Gpu;
-use antumbra::resource::Texture;
+use antumbra::gpu::resource::Texture;
 use antumbra::technique::{InnerContent, InnerPicture};
 
 /// Pixels a side of what is shown.

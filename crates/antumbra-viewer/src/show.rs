@@ -1,7 +1,7 @@
 //! What is shown of a half: the shaded picture, the visibility, or its error.
 
 use antumbra::Gpu;
-use antumbra::resource::Texture;
+use antumbra::gpu::resource::Texture;
 use antumbra_metrics::{HEAT_SCALE, color_bar};
 
 /// What a picture shows.

@@ -2,12 +2,14 @@
 
 use crate::fitter::Fitter;
 use crate::show::{Show, Shown};
-use antumbra::passes::{geometry_buffer::GeometryBuffer, picture::Picture};
-use antumbra::recorder::PassTime;
-use antumbra::resource::Texture;
+use antumbra::gpu::recorder::PassTime;
+use antumbra::gpu::resource::Texture;
+use antumbra::input::casters::Role;
+use antumbra::input::frame;
+use antumbra::passes::pixels::geometry_buffer::GeometryBuffer;
+use antumbra::passes::pixels::picture::Picture;
 use antumbra::scene::{Arranged, Placed};
 use antumbra::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Technique, Timer, View};
-use antumbra::{casters::Role, frame};
 use antumbra_scene::{Aabb, Instance, Scene};
 use glam::{Affine3A, Quat, Vec3};
 use std::sync::Arc;

@@ -1,6 +1,6 @@
 //! Milliseconds of each pass over the last frames.
 
-use antumbra::recorder::PassTime;
+use antumbra::gpu::recorder::PassTime;
 use std::collections::VecDeque;
 
 /// Frames that are kept.

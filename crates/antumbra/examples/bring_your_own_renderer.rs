@@ -4,8 +4,9 @@
 //!
 //!     cargo run --example bring_your_own_renderer -- backprojection shadow.ppm
 
-use antumbra::casters::{BorrowedMesh, Indices, Role, Transforms};
-use antumbra::{Aabb, Casters, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Spec, View, frame};
+use antumbra::input::casters::{BorrowedMesh, Indices, Role, Transforms};
+use antumbra::input::frame;
+use antumbra::{Aabb, Casters, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Spec, View};
 use glam::{Mat4, Quat, Vec2, Vec3};
 use std::{error::Error, sync::Arc};
 use wgpu::util::DeviceExt;
@@ -107,7 +108,7 @@ pub async fn render(technique: &str) -> Result<(Vec<f32>, Vec<u8>), Box<dyn Erro
         role: Role::Caster,
         mask: None,
     };
-    let casters = Arc::new(Casters::borrow(&gpu, &[mesh])?);
+    let casters = Arc::new(Casters::from_buffers(&gpu, &[mesh])?);
     let normal_error = frame::normal_error(wgpu::TextureFormat::Rgba16Float);
     let (depth, normal) = (host.depth.clone(), host.normals.clone());
     let geometry = GeometryInput { depth, normal, normal_error, size: [SIZE; 2] };
@@ -121,8 +122,8 @@ pub async fn render(technique: &str) -> Result<(Vec<f32>, Vec<u8>), Box<dyn Erro
 
     host.shade(&mut encoder);
     host.queue.submit([encoder.finish()]);
-    let visibility = antumbra::resource::read_texture(&gpu, &host.visibility).await?;
-    let picture = antumbra::resource::read_texture(&gpu, &host.picture).await?;
+    let visibility = antumbra::gpu::resource::read_texture(&gpu, &host.visibility).await?;
+    let picture = antumbra::gpu::resource::read_texture(&gpu, &host.picture).await?;
     Ok((visibility.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect(), picture))
 }
 
@@ -232,8 +233,8 @@ impl Host {
         let stage = ["prepass_vertex", "prepass_fragment"];
         let pipeline = self.pipeline(stage, wgpu::TextureFormat::Rgba16Float, true);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[antumbra::recorder::color_target(&self.normals, wgpu::Color::TRANSPARENT)],
-            depth_stencil_attachment: Some(antumbra::recorder::depth_target(&self.depth)),
+            color_attachments: &[antumbra::gpu::recorder::color_target(&self.normals, wgpu::Color::TRANSPARENT)],
+            depth_stencil_attachment: Some(antumbra::gpu::recorder::depth_target(&self.depth)),
             ..Default::default()
         });
         pass.set_pipeline(&pipeline);
@@ -249,7 +250,7 @@ impl Host {
         let group = self.bind(&pipeline, &[&self.visibility.create_view(&Default::default()), &self.normals]);
         let target = self.picture.create_view(&Default::default());
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            color_attachments: &[antumbra::recorder::color_target(&target, wgpu::Color::BLACK)],
+            color_attachments: &[antumbra::gpu::recorder::color_target(&target, wgpu::Color::BLACK)],
             ..Default::default()
         });
         pass.set_pipeline(&pipeline);

@@ -1,7 +1,5 @@
 //! What can go wrong, said once.
 
-use crate::shader::ShaderError;
-
 /// An error of the library. Each message says what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -50,6 +48,22 @@ pub enum Error {
     /// A bug of ours.
     #[error("GPU validation failed, which is a bug in antumbra: {0}")]
     Validation(String),
+    /// A pass that does not bind a resource of its shader.
+    #[error("{shader}: nothing is bound to `{name}`")]
+    MissingBinding {
+        /// The shader's module.
+        shader: &'static str,
+        /// The resource.
+        name: String,
+    },
+    /// A pass that binds a name that no variant of its shader declares.
+    #[error("{shader}: no variant of the shader declares `{name}`, which is bound")]
+    UnknownBinding {
+        /// The shader's module.
+        shader: &'static str,
+        /// The name.
+        name: &'static str,
+    },
     /// A bug of ours.
     #[error(transparent)]
     Shader(#[from] ShaderError),
@@ -75,8 +89,11 @@ pub enum Error {
     },
     /// A technique SPEC that cannot be read.
     #[error(transparent)]
-    Spec(#[from] crate::settings::SpecError),
-    /// A mesh that cannot be borrowed.
+    Spec(#[from] SpecError),
+    /// Textures or matrices of a frame that do not go together.
+    #[error("frame: {0}")]
+    Frame(String),
+    /// A mesh whose buffers cannot be used.
     #[error("mesh {mesh}: {message}")]
     Casters {
         /// Its place in the list.
@@ -90,4 +107,71 @@ pub enum Error {
         /// What is wrong and what would be right.
         message: String,
     },
+}
+
+/// A shader that does not compose or does not validate. The message holds the place in the source.
+#[derive(Debug, thiserror::Error)]
+#[error("shader {module}: {message}")]
+pub struct ShaderError {
+    /// The module that was composed.
+    pub module: String,
+    /// What is wrong, with an excerpt.
+    pub message: String,
+}
+
+/// A SPEC that cannot be read.
+#[derive(Debug, PartialEq, thiserror::Error)]
+pub enum SpecError {
+    /// No such technique.
+    #[error("unknown technique `{asked}`{}; `antumbra techniques` lists them", did_you_mean(.nearest))]
+    UnknownTechnique {
+        /// As given.
+        asked: String,
+        /// The most similar name.
+        nearest: Option<&'static str>,
+    },
+    /// No such setting.
+    #[error("technique `{technique}` has no setting `{key}`{}; its settings are: {}", did_you_mean(.nearest), .known.join(", "))]
+    UnknownKey {
+        /// The technique.
+        technique: String,
+        /// As given.
+        key: String,
+        /// The most similar key.
+        nearest: Option<&'static str>,
+        /// All keys.
+        known: Vec<&'static str>,
+    },
+    /// A key given twice.
+    #[error("technique `{technique}`: `{key}` is set twice")]
+    Twice {
+        /// The technique.
+        technique: String,
+        /// The key.
+        key: String,
+    },
+    /// Not `key=value`.
+    #[error("technique `{technique}`: `{part}` is not of the form key=value")]
+    Form {
+        /// The technique.
+        technique: String,
+        /// As given.
+        part: String,
+    },
+    /// A value that the setting does not take.
+    #[error("technique `{technique}`: `{key}={value}`: {expected}")]
+    Value {
+        /// The technique.
+        technique: String,
+        /// The key.
+        key: String,
+        /// As given.
+        value: String,
+        /// What it takes.
+        expected: String,
+    },
+}
+
+fn did_you_mean(nearest: &Option<&'static str>) -> String {
+    nearest.map_or(String::new(), |n| format!(" (did you mean `{n}`?)"))
 }

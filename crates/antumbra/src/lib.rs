@@ -6,12 +6,12 @@
 //!
 //! ```no_run
 //! use antumbra::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Spec, View};
-//! # use antumbra::casters::BorrowedMesh;
+//! # use antumbra::input::casters::BorrowedMesh;
 //! # fn host(device: wgpu::Device, queue: wgpu::Queue, mut encoder: wgpu::CommandEncoder, meshes: &[BorrowedMesh],
 //! #     geometry: GeometryInput, visibility: wgpu::TextureView, view: View, light: RectLight) -> Result<(), Error> {
 //! // Once, with what the renderer has anyway: device, vertex and index buffers, depth, normals, an R32Float texture.
 //! let gpu = Gpu::from_host(device, queue);
-//! let casters = std::sync::Arc::new(Casters::borrow(&gpu, meshes)?);
+//! let casters = std::sync::Arc::new(Casters::from_buffers(&gpu, meshes)?);
 //! let bounds = casters.bounds();
 //! let mut frame = Frame::new(&gpu, casters, geometry, visibility, view, light)?;
 //! let mut shadow = "pcss:map=1024".parse::<Spec>()?.make(&gpu)?;
@@ -31,33 +31,30 @@
 //! - What goes in and what comes out: [`Frame`], [`GeometryInput`], [`casters::BorrowedMesh`], [`ShadowFrustum`].
 //! - Which techniques there are and what can be set: [`techniques::TECHNIQUES`], [`Spec`].
 //! - Time and memory: [`Timer`], [`Technique::memory`].
-//! - Writing a technique: [`technique::Describe`], the [`passes`] that several techniques share, and `CONTRIBUTING.md`.
+//! - Writing a technique: [`technique::TechniqueFactory`], the [`passes`] that several techniques share, and `CONTRIBUTING.md`.
 #![deny(missing_docs)]
 
-pub mod casters;
-mod cells;
-mod error;
-pub mod fit;
-pub mod frame;
+pub mod error;
 pub mod gpu;
+pub mod input;
 pub mod passes;
-pub mod pipeline;
-pub mod recorder;
-pub mod resource;
-pub mod roles;
 pub mod scene;
-pub mod settings;
-pub mod shader;
+#[cfg(test)]
+mod shaders;
+pub mod shadows;
 pub mod technique;
 pub mod techniques;
 #[cfg(test)]
 mod testing;
 
 pub use antumbra_scene::{Aabb, Camera, RectLight};
-pub use casters::Casters;
 pub use error::Error;
-pub use fit::ShadowFrustum;
-pub use frame::{Frame, GeometryInput, View};
-pub use gpu::{AdapterChoice, Gpu};
-pub use recorder::{Recorder, Timer};
-pub use technique::{Spec, Technique, TechniqueInfo};
+pub use gpu::device::{AdapterChoice, Gpu};
+pub use gpu::timer::Timer;
+pub use input::casters::Casters;
+pub use input::frame::{Frame, FrameDescriptor, View};
+pub use input::frustum::ShadowFrustum;
+pub use shadows::Shadows;
+pub use technique::{Technique, TechniqueFactory, TechniqueInfo};
+pub use techniques::spec::Spec;
+pub use wgpu;

@@ -1,65 +1,69 @@
-//! Drawing a whole [`Scene`]: geometry buffer, technique, picture. What a host does, for programs that have no renderer.
+//! A small renderer of a whole [`Scene`] for programs that have none: geometry buffer, shadows, shaded image.
 
-use crate::casters::{BatchLayout, CastersBuilder, Role, items_of};
-use crate::passes::{geometry_buffer::GeometryBuffer, picture::Picture};
-use crate::resource::{Texture, buffer_of};
-use crate::roles::roles_with_pauses;
-use crate::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, ShadowFrustum, Technique, View, frame};
+use crate::error::Error;
+use crate::gpu::device::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::resources::{Resources, buffer_of};
+use crate::gpu::texture::{Texture, TextureDescription};
+use crate::gpu::timer::Timer;
+use crate::input::casters::{BatchLayout, Casters, CastersBuilder, Role, clusters_of};
+use crate::input::classification::roles_with_pauses;
+use crate::input::frame::{Frame, FrameDescriptor, View};
+use crate::input::frustum::ShadowFrustum;
+use crate::passes::pixels::{geometry_buffer::GeometryBuffer, picture};
 use antumbra_scene::slices::{RUN, at_once};
 use antumbra_scene::{Aabb, Instance, Material, Mesh, Scene, Wrap};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
 
-/// A scene on the GPU with everything that a picture of it needs.
+/// A scene on the GPU with everything that an image of it needs.
 pub struct SceneRenderer {
-    /// The picture's surfaces.
+    /// The surfaces that the image shows.
     pub geometry: GeometryBuffer,
-    /// What techniques are given.
+    /// The input of techniques.
     pub frame: Frame,
-    /// `R32Float`: what techniques fill.
+    /// `R32Float`, filled by a technique.
     pub visibility: Texture,
-    picture: Picture,
+    resources: Resources,
 }
 
 impl SceneRenderer {
-    /// Uploads a scene and makes the textures of a picture of `size` pixels.
+    /// Uploads a scene and makes the textures of an image of `size` pixels.
     pub fn new(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> Result<SceneRenderer, Error> {
         let geometry = GeometryBuffer::new(gpu, size)?;
-        let usage = wgpu::TextureUsages::STORAGE_BINDING
-            | wgpu::TextureUsages::TEXTURE_BINDING
-            | wgpu::TextureUsages::COPY_SRC
-            | wgpu::TextureUsages::COPY_DST;
-        let visibility = Texture::new(gpu, "visibility", size, 1, wgpu::TextureFormat::R32Float, usage);
-        let input = GeometryInput {
-            depth: geometry.depth.view.clone(),
-            normal: geometry.normal.view.clone(),
-            normal_error: frame::normal_error(geometry.normal.texture.format()),
-            size,
-        };
-        let casters = Arc::new(upload(gpu, scene)?);
+        let visibility = visibility(gpu, size);
         let view = View::of_camera(&scene.camera, size);
-        let mut frame = Frame::new(gpu, casters, input, visibility.view.clone(), view, scene.light)?;
-        let frustum = ShadowFrustum::fit(scene, &view);
-        frame.update(gpu, view, scene.light, frustum);
-        Ok(SceneRenderer { geometry, frame, picture: Picture::new(gpu, size), visibility })
+        let descriptor = FrameDescriptor {
+            view,
+            light: scene.light,
+            casters: &Arc::new(upload(gpu, scene)?),
+            depth: &geometry.depth.view,
+            normals: &geometry.normal.view,
+            visibility: &visibility.view,
+        };
+        let mut frame = Frame::new(gpu, &descriptor)?;
+        frame.update(gpu, view, scene.light, ShadowFrustum::fit(scene, &view));
+        Ok(SceneRenderer { geometry, frame, visibility, resources: Resources::default() })
     }
 
-    /// Records the geometry buffer: the host's part.
-    pub fn record_geometry(&self, recorder: &mut Recorder) -> Result<(), Error> {
-        self.geometry.record(recorder, &self.frame.casters, &self.frame.view)
+    /// Records the geometry buffer: the part of a host.
+    pub fn record_geometry(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: Option<&Timer>,
+    ) -> Result<(), Error> {
+        let mut recorder = Recorder::new(gpu, encoder, &mut self.resources).timed(timer);
+        self.geometry.record(&mut recorder, &self.frame.casters, &self.frame.view)
     }
 
-    /// Records a technique.
-    pub fn record_shadow(&self, technique: &mut dyn Technique, recorder: &mut Recorder) -> Result<(), Error> {
-        technique.record(&self.frame, recorder)
-    }
-
-    /// Shades with what is in the visibility texture and returns 8-bit sRGB RGBA, row 0 on top.
-    pub async fn picture(&self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        self.picture.record(&mut Recorder::new(gpu, &mut encoder), &self.frame, &self.geometry)?;
+    /// Shades with the visibility texture and returns 8-bit sRGB RGBA, row 0 on top.
+    pub async fn image(&self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
+        let (mut encoder, mut resources) =
+            (gpu.device.create_command_encoder(&Default::default()), Resources::default());
+        let image = picture::shade(&mut Recorder::new(gpu, &mut encoder, &mut resources), &self.frame, &self.geometry)?;
         gpu.queue.submit([encoder.finish()]);
-        gpu.read_texture(&self.picture.texture).await
+        gpu.read_texture(&image).await
     }
 
     /// The visibility of each pixel, row 0 on top.
@@ -67,13 +71,20 @@ impl SceneRenderer {
         Ok(bytemuck::pod_collect_to_vec(&gpu.read_texture(&self.visibility).await?))
     }
 
-    /// Replaces the visibility, so that a picture can be made with the truth.
+    /// Replaces the visibility, so that an image can be made with the truth.
     pub fn write_visibility(&self, gpu: &Gpu, values: &[f32]) {
         let t = &self.visibility.texture;
         let layout =
             wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(t.width() * 4), rows_per_image: None };
         gpu.queue.write_texture(t.as_image_copy(), bytemuck::cast_slice(values), layout, t.size());
     }
+}
+
+/// A texture that techniques fill.
+pub fn visibility(gpu: &Gpu, size: [u32; 2]) -> Texture {
+    let help = "visible fraction of the light: 1 lit, 0 umbra";
+    let uses = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+    Texture::new(gpu, "visibility", TextureDescription::new(size, wgpu::TextureFormat::R32Float, help).usage(uses))
 }
 
 /// Puts a scene's triangles on the GPU: all plain meshes in one batch, one batch more for each texture.
@@ -208,7 +219,7 @@ fn push_batch(
     textured: Option<&Material>,
     meshes: &[usize],
 ) -> Option<Vec<usize>> {
-    let (mut words, mut indices, mut order, mut items) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut words, mut indices, mut order, mut clusters) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let mut ranges = Vec::new();
     let stride = if textured.is_some() { 5 } else { 3 };
     for &m in meshes {
@@ -224,10 +235,10 @@ fn push_batch(
             let from = order.len() as u32;
             order.extend(placed);
             let range = from..order.len() as u32;
-            items.extend(items_of(first, mesh.triangle_count() as u32, range, role, color));
+            clusters.extend(clusters_of(first, mesh.triangle_count() as u32, range, role, color));
         }
     }
-    if items.is_empty() {
+    if clusters.is_empty() {
         return None;
     }
     let transforms: Vec<Mat4> = order.iter().map(|&i| Mat4::from(scene.instances[i].world_from_object)).collect();
@@ -239,8 +250,8 @@ fn push_batch(
         index_offset: 0,
         transform_offset: 0,
         transform_stride: 16,
-        first_item: 0,
-        item_count: 0,
+        first_cluster: 0,
+        cluster_count: 0,
         number: 0,
         alpha_cutoff: textured.and_then(|m| m.alpha_cutoff).unwrap_or(0.0),
         alpha: textured.map_or(1.0, |m| m.base_color.w),
@@ -256,7 +267,7 @@ fn push_batch(
             buffer_of(gpu, "transforms", bytemuck::cast_slice(&transforms), storage | wgpu::BufferUsages::COPY_DST),
         ],
         texture.as_ref().map(|(view, sampler)| (view, sampler)),
-        items.into_iter(),
+        clusters.into_iter(),
         ranges,
     );
     Some(order)
@@ -303,9 +314,9 @@ fn srgb(linear: Vec3) -> [u8; 4] {
 /// A texture with all its mip levels, filtered on the CPU, and its sampler.
 fn upload_texture(gpu: &Gpu, source: &antumbra_scene::Texture) -> (wgpu::TextureView, wgpu::Sampler) {
     let mips = 32 - source.width.max(source.height).leading_zeros();
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    let size = [source.width, source.height];
-    let texture = Texture::new(gpu, "base colour", size, mips, wgpu::TextureFormat::Rgba8UnormSrgb, usage);
+    let format = wgpu::TextureFormat::Rgba8UnormSrgb;
+    let description = TextureDescription::new([source.width, source.height], format, "base colour");
+    let texture = Texture::new(gpu, "base colour", description.mips(mips).usage(wgpu::TextureUsages::COPY_DST));
     let (mut level, mut width, mut height) = (source.rgba.clone(), source.width, source.height);
     for mip in 0..mips {
         gpu.queue.write_texture(
@@ -331,7 +342,7 @@ fn upload_texture(gpu: &Gpu, source: &antumbra_scene::Texture) -> (wgpu::Texture
         mipmap_filter: wgpu::MipmapFilterMode::Linear,
         ..Default::default()
     });
-    (texture.view, sampler)
+    (texture.view.clone(), sampler)
 }
 
 /// The next mip level: each texel the mean of up to four.

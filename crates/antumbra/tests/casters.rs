@@ -5,8 +5,8 @@ mod host;
 
 mod common;
 
-use antumbra::casters::{BorrowedMesh, Indices, Mask};
-use antumbra::passes::depth_map::DepthMap;
+use antumbra::input::casters::{BorrowedMesh, Indices, Mask};
+use antumbra::passes::maps::depth_map::DepthMap;
 use antumbra::{Aabb, Casters, Error};
 use antumbra_reference::{Ray, Tracer};
 use antumbra_scene::{Instance, Material, Scene, Texture, Wrap};
@@ -36,7 +36,7 @@ fn wedges() -> Scene {
 fn borrowed(scene: &Scene, layout: Layout) -> Vec<f32> {
     let hosts: Vec<Host> = (0..scene.meshes.len()).map(|m| Host::new(scene, m, layout)).collect();
     let meshes: Vec<BorrowedMesh> = hosts.iter().map(Host::mesh).collect();
-    let casters = Casters::borrow(gpu(), &meshes).unwrap_or_else(|e| panic!("{layout:?}: {e}"));
+    let casters = Casters::from_buffers(gpu(), &meshes).unwrap_or_else(|e| panic!("{layout:?}: {e}"));
     assert_eq!(casters.triangle_count(), scene.triangle_count() as u64, "{layout:?}");
     assert_eq!(casters.bounds(), scene.bounds(), "{layout:?}");
     with_casters(scene, casters)
@@ -47,11 +47,11 @@ fn with_casters(scene: &Scene, casters: Casters) -> Vec<f32> {
     let mut renderer = drawn(scene, SIZE);
     renderer.frame.casters = Arc::new(casters);
     common::submit(|recorder| renderer.record_geometry(recorder)).expect("draws");
-    shadowed(&renderer, &mut *technique("pcss:map=256")).expect("draws")
+    shadowed(&renderer, &mut technique("pcss:map=256")).expect("draws")
 }
 
 fn uploaded(scene: &Scene) -> Vec<f32> {
-    shadowed(&drawn(scene, SIZE), &mut *technique("pcss:map=256")).expect("draws")
+    shadowed(&drawn(scene, SIZE), &mut technique("pcss:map=256")).expect("draws")
 }
 
 /// Largest difference of two pictures, and how many pixels differ by over a thousandth.
@@ -104,7 +104,7 @@ fn refusal(spoil: impl for<'a> FnOnce(&mut BorrowedMesh<'a>, &'a wgpu::Buffer)) 
     let useless = host::buffer(&[0; 4096], wgpu::BufferUsages::COPY_DST);
     let mut mesh = host.mesh();
     spoil(&mut mesh, &useless);
-    match Casters::borrow(gpu(), &[host.mesh(), mesh]) {
+    match Casters::from_buffers(gpu(), &[host.mesh(), mesh]) {
         Err(Error::Casters { mesh: 1, message }) => message,
         Err(e) => panic!("another error: {e}"),
         Ok(_) => panic!("it was taken"),
@@ -155,7 +155,7 @@ fn a_mask_that_makes_no_sense_is_refused() {
         (12, f32::NAN, "cutoff of NaN"),
     ] {
         let mask = Mask { texture: &texture, sampler: &sampler, uv_offset, cutoff };
-        let refused = Casters::borrow(gpu(), &[BorrowedMesh { mask: Some(mask), ..leaf.mesh() }]);
+        let refused = Casters::from_buffers(gpu(), &[BorrowedMesh { mask: Some(mask), ..leaf.mesh() }]);
         let message = refused.err().expect("it was taken").to_string();
         assert!(message.contains(words), "`{words}` is not said by: {message}");
     }
@@ -163,7 +163,7 @@ fn a_mask_that_makes_no_sense_is_refused() {
 
 #[test]
 fn no_mesh_at_all_is_lit() {
-    let casters = Casters::borrow(gpu(), &[]).expect("nothing is wrong with nothing");
+    let casters = Casters::from_buffers(gpu(), &[]).expect("nothing is wrong with nothing");
     assert_eq!((casters.triangle_count(), casters.cluster_count()), (0, 0));
     assert!(with_casters(&wedges(), casters).iter().all(|v| *v == 1.0), "nothing is in the picture");
 }
@@ -176,18 +176,18 @@ fn refit_finds_moved_vertices_and_without_it_they_are_culled() {
     far.meshes[1].positions.iter_mut().for_each(|p| p.x += 300.0);
     let [ground, near, moving] =
         [(&scene, 0), (&scene, 1), (&far, 1)].map(|(scene, mesh)| Host::new(scene, mesh, Layout::PLAIN));
-    let casters = Casters::borrow(gpu(), &[ground.mesh(), moving.mesh()]).expect("borrows");
+    let casters = Casters::from_buffers(gpu(), &[ground.mesh(), moving.mesh()]).expect("borrows");
     // The host moves the far mesh to where the near one is.
     let mut encoder = gpu().device.create_command_encoder(&Default::default());
     encoder.copy_buffer_to_buffer(&near.vertices, 0, &moving.vertices, 0, near.vertices.size());
     gpu().queue.submit([encoder.finish()]);
     let mut renderer = drawn(&scene, SIZE);
-    let expected = shadowed(&renderer, &mut *technique("hard:map=256")).expect("draws");
+    let expected = shadowed(&renderer, &mut technique("hard:map=256")).expect("draws");
     renderer.frame.casters = Arc::new(casters);
-    let stale = shadowed(&renderer, &mut *technique("hard:map=256")).expect("draws");
+    let stale = shadowed(&renderer, &mut technique("hard:map=256")).expect("draws");
     assert!(stale.iter().sum::<f32>() > expected.iter().sum::<f32>() + 100.0, "boxes that are out of date must cull");
     renderer.frame.casters.refit(gpu()).expect("measures");
-    let fitted = shadowed(&renderer, &mut *technique("hard:map=256")).expect("draws");
+    let fitted = shadowed(&renderer, &mut technique("hard:map=256")).expect("draws");
     assert_eq!(difference(&fitted, &expected), (0.0, 0));
 }
 
@@ -295,7 +295,8 @@ fn a_borrowed_mask_cuts_what_an_uploaded_one_cuts() {
     let (texture, sampler) = host::texture(scene.materials[1].texture.as_ref().expect("it has one"));
     let mask = Mask { texture: &texture, sampler: &sampler, uv_offset: 12, cutoff: 0.5 };
     let cut = BorrowedMesh { mask: Some(mask), ..leaf.mesh() };
-    let visibility = |mesh| with_casters(&scene, Casters::borrow(gpu(), &[ground.mesh(), mesh]).expect("borrows"));
+    let visibility =
+        |mesh| with_casters(&scene, Casters::from_buffers(gpu(), &[ground.mesh(), mesh]).expect("borrows"));
     let (largest, differing) = difference(&visibility(cut), &uploaded(&scene));
     assert!(largest < 1e-4, "differs by up to {largest} in {differing} pixels");
     let (_, differing) = difference(&visibility(leaf.mesh()), &uploaded(&scene));
@@ -305,7 +306,7 @@ fn a_borrowed_mask_cuts_what_an_uploaded_one_cuts() {
 #[test]
 fn bounds_of_casters_are_the_union() {
     let hosts = [0, 1].map(|m| Host::new(&wedges(), m, Layout::PLAIN));
-    let casters = Casters::borrow(gpu(), &hosts.each_ref().map(Host::mesh)).expect("borrows");
+    let casters = Casters::from_buffers(gpu(), &hosts.each_ref().map(Host::mesh)).expect("borrows");
     let union = hosts.iter().fold(Aabb::EMPTY, |b, h| b.union(&h.bounds));
     assert_eq!(casters.bounds(), union);
     assert_eq!(casters.cluster_count(), 4, "one cluster for the ground and for each of three wedges");

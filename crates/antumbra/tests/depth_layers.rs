@@ -3,8 +3,9 @@
 mod common;
 
 use antumbra::Error;
-use antumbra::passes::{depth_layers::DepthLayers, depth_map::DepthMap};
-use antumbra::resource::{Texture, read_layers, read_texture};
+use antumbra::gpu::resource::{Texture, read_layers, read_texture};
+use antumbra::passes::maps::depth_layers::DepthLayers;
+use antumbra::passes::maps::depth_map::DepthMap;
 use antumbra::scene::SceneRenderer;
 use antumbra_reference::{Ray, Tracer};
 use antumbra_scene::{Mesh, Scene};

@@ -3,10 +3,10 @@
 
 mod common;
 
-use antumbra::passes::compact::{Compact, Compaction, Element};
-use antumbra::passes::scan::{ListLength, Scan};
-use antumbra::passes::sort::Sort;
-use antumbra::resource::{read_buffer, storage_buffer};
+use antumbra::gpu::resource::{read_buffer, storage_buffer};
+use antumbra::passes::lists::compact::{Compact, Compaction, Element};
+use antumbra::passes::lists::scan::{ListLength, Scan};
+use antumbra::passes::lists::sort::Sort;
 use antumbra::{Error, Recorder};
 use common::gpu;
 use pollster::block_on;

@@ -2,9 +2,9 @@
 
 mod common;
 
-use antumbra::recorder::Work;
-use antumbra::resource::storage_buffer;
-use antumbra::shader::ShaderKey;
+use antumbra::gpu::recorder::Work;
+use antumbra::gpu::resource::storage_buffer;
+use antumbra::gpu::shader::ShaderKey;
 use antumbra::{AdapterChoice, Error, Gpu, Recorder, Spec, Timer, bindings};
 use common::{builtin, drawn, gpu, quick, technique};
 use pollster::block_on;
@@ -40,7 +40,7 @@ fn threads_are_rounded_up_to_workgroups_and_unused_names_are_passed_over() {
     recorder.compute("threads", &pipeline, set, Work::Threads([100, 1, 1]));
     recorder.compute("groups", &pipeline, set, Work::Groups([1, 1, 1]));
     gpu.queue.submit([encoder.finish()]);
-    let bytes = block_on(antumbra::resource::read_buffer(gpu, &buffer)).expect("reads");
+    let bytes = block_on(antumbra::gpu::resource::read_buffer(gpu, &buffer)).expect("reads");
     let numbers: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
     let expected: Vec<u32> = (0..100).map(|i| if i < 64 { 2 } else { 1 }).collect();
     assert_eq!(numbers, expected, "100 threads are two workgroups, one workgroup is 64 threads");
@@ -85,7 +85,7 @@ fn every_pass_of_a_technique_is_timed_under_the_label_that_its_memory_bears() {
         let mut made = technique(&quick(info));
         let mut timer = Timer::new(gpu()).expect("makes a timer");
         let mut encoder = gpu().device.create_command_encoder(&Default::default());
-        renderer.record_shadow(&mut *made, &mut Recorder::timed(gpu(), &mut encoder, &timer)).expect("records");
+        renderer.record_shadow(&mut made, &mut Recorder::timed(gpu(), &mut encoder, &timer)).expect("records");
         let times = timer.finish(gpu(), encoder).expect("finishes");
         assert!(!gpu().capabilities.timestamps || !times.is_empty(), "{}", info.name);
         for memory in made.memory().iter().filter(|_| gpu().capabilities.timestamps) {

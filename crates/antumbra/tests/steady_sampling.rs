@@ -37,7 +37,7 @@ fn is_ground(scene: &Scene, pixel: usize) -> bool {
 }
 
 fn maps(technique: &dyn Technique) -> f64 {
-    let figures = block_on(technique.figures(gpu())).unwrap();
+    let figures = block_on(technique.stats(gpu())).unwrap();
     figures.iter().find(|(name, _)| *name == "maps").unwrap().1
 }
 
@@ -61,7 +61,7 @@ fn shots(spec: &str) -> Vec<Shot> {
         let scene = scene_of(frame);
         renderer.frame.casters = Arc::new(antumbra::scene::upload(gpu(), &scene).unwrap());
         submit(|recorder| renderer.record_geometry(recorder)).unwrap();
-        let visibility = shadowed(&renderer, &mut *shadow).unwrap();
+        let visibility = shadowed(&renderer, &mut shadow).unwrap();
         let truth = truth(&scene, SIZE, 1024);
         Shot { visibility, maps: maps(&*shadow), truth: truth.visibility, valid: truth.valid }
     };

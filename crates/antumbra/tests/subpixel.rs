@@ -3,7 +3,7 @@
 mod common;
 
 use antumbra::technique::Technique;
-use antumbra::techniques::subpixel::SubpixelSettings;
+use antumbra::techniques::alias_free::subpixel::SubpixelSettings;
 use antumbra::{Error, Spec};
 use antumbra_reference::{Reference, trace_centre};
 use antumbra_scene::Scene;
@@ -43,11 +43,11 @@ fn drawn_after(scene: &Scene, spec: &str, frames: u32) -> Drawn {
     let renderer = drawn(scene, SIZE);
     let mut technique: Box<dyn Technique> = technique(spec);
     for _ in 0..frames {
-        shadowed(&renderer, &mut *technique).unwrap_or_else(|e| panic!("{spec}: {e}"));
+        shadowed(&renderer, &mut technique).unwrap_or_else(|e| panic!("{spec}: {e}"));
         gpu().wait().expect("the device is there");
     }
-    let visibility = shadowed(&renderer, &mut *technique).unwrap_or_else(|e| panic!("{spec}: {e}"));
-    let figures = block_on(technique.figures(gpu())).expect("counts").into_iter().collect();
+    let visibility = shadowed(&renderer, &mut technique).unwrap_or_else(|e| panic!("{spec}: {e}"));
+    let figures = block_on(technique.stats(gpu())).expect("counts").into_iter().collect();
     Drawn { visibility, figures }
 }
 

@@ -25,12 +25,12 @@ fn fault(renderer: &SceneRenderer, spec: &str) -> Option<String> {
     let mut pictures = Vec::new();
     // The same instance twice, then another.
     for run in ["first", "second"] {
-        match shadowed(renderer, &mut *one) {
+        match shadowed(renderer, &mut one) {
             Ok(picture) => pictures.push(picture),
             Err(e) => return Some(format!("{run} record: {e}")),
         }
     }
-    match shadowed(renderer, &mut *technique(spec)) {
+    match shadowed(renderer, &mut technique(spec)) {
         Ok(picture) => pictures.push(picture),
         Err(e) => return Some(format!("another instance: {e}")),
     }
@@ -75,8 +75,8 @@ fn a_technique_follows_a_change_of_picture_size_and_casters() {
         let spec = quick(info);
         let mut kept = technique(&spec);
         for (renderer, name) in [(&first, "first"), (&second, "second"), (&first, "first again")] {
-            let by_kept = shadowed(renderer, &mut *kept).unwrap_or_else(|e| panic!("{spec}, {name}: {e}"));
-            let by_new = shadowed(renderer, &mut *technique(&spec)).unwrap_or_else(|e| panic!("{spec}, {name}: {e}"));
+            let by_kept = shadowed(renderer, &mut kept).unwrap_or_else(|e| panic!("{spec}, {name}: {e}"));
+            let by_new = shadowed(renderer, &mut technique(&spec)).unwrap_or_else(|e| panic!("{spec}, {name}: {e}"));
             assert!(by_kept == by_new, "{spec}: on the {name} scene a used instance differs from a new one");
         }
     }
@@ -90,7 +90,7 @@ fn every_technique_says_what_it_is_and_what_memory_it_takes() {
             assert!(!text.is_empty(), "{}: an empty text", info.name);
         }
         let mut made = technique(info.name);
-        shadowed(&renderer, &mut *made).unwrap_or_else(|e| panic!("{}: {e}", info.name));
+        shadowed(&renderer, &mut made).unwrap_or_else(|e| panic!("{}: {e}", info.name));
         for memory in made.memory() {
             assert!(memory.bytes > 0 && !memory.pass.is_empty(), "{}: {memory:?}", info.name);
         }
@@ -124,9 +124,9 @@ fn every_technique_knows_what_its_shaders_take() {
         let spec: antumbra::Spec = quick(info).parse().unwrap_or_else(|e| panic!("{e}"));
         let mut made = spec.make(&gpu).unwrap_or_else(|e| panic!("{}: {e}", info.name));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let recorded = renderer.record_shadow(&mut *made, &mut antumbra::Recorder::new(&gpu, &mut encoder));
+        let recorded = renderer.record_shadow(&mut made, &mut antumbra::Recorder::new(&gpu, &mut encoder));
         recorded.unwrap_or_else(|e| panic!("{}: {e}", info.name));
-        let measured = gpu.needs().max(antumbra::shader::Needs::CORE);
+        let measured = gpu.needs().max(antumbra::gpu::shader::Needs::CORE);
         // Other adapters take other ways, which may need less.
         let is_known = if gpu.is_software() { measured == info.needs } else { measured.max(info.needs) == info.needs };
         if !is_known {

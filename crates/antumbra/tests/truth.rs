@@ -305,7 +305,7 @@ fn lit_hills_are_free_of_acne() {
     for (scene, truth) in rolling() {
         let renderer = drawn(scene, [128, 128]);
         for spec in ["hard", "pcf", "pcss"] {
-            let got = shadowed(&renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{spec}: {e}"));
+            let got = shadowed(&renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{spec}: {e}"));
             let (all, far) = (compared(&got, truth), acne_far_from_shadows(&got, truth));
             println!(
                 "{} by {spec}: error {:.4}, acne {:.5}, far from shadows {far:?}",

@@ -11,7 +11,7 @@ mod subpixel;
 mod vsm;
 
 use crate::error::CliError;
-use antumbra::settings::nearest;
+use antumbra::technique::settings::nearest;
 use kit::{Findings, Lab};
 
 /// Every suite.

@@ -2,8 +2,8 @@
 
 use super::print;
 use crate::error::CliError;
-use antumbra::settings::{Kind, Setting};
 use antumbra::technique::TechniqueInfo;
+use antumbra::technique::settings::{Kind, Setting};
 use antumbra::techniques::TECHNIQUES;
 use antumbra_scene::builtin;
 use serde::Serialize;
@@ -108,7 +108,7 @@ impl Adapter {
 
 /// Lists the adapters. That there is none is a failure: nothing can be drawn.
 pub fn adapters(json: bool) -> Result<(), CliError> {
-    let found = pollster::block_on(antumbra::gpu::adapters());
+    let found = pollster::block_on(antumbra::gpu::device::adapters());
     let list: Vec<Adapter> = found.iter().enumerate().map(|(i, a)| Adapter::new(i, a)).collect();
     if json {
         print_json(&list)?;

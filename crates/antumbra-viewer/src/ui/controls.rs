@@ -1,7 +1,7 @@
 //! A control for each setting, made from its description alone.
 
 use crate::choice::Choice;
-use antumbra::settings::{Kind, Setting};
+use antumbra::technique::settings::{Kind, Setting};
 use eframe::egui::{self, RichText};
 use serde_json::Value;
 

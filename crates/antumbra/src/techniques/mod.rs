@@ -2,53 +2,38 @@
 
 use crate::technique::{TechniqueInfo, entry};
 
-pub mod adaptive_sampling;
-pub mod alias_free;
-pub mod alias_free_soft;
-pub mod backprojection;
-pub mod csm;
-pub mod cssm;
-pub mod esm;
-pub mod evsm;
-pub mod fvsm;
-pub mod hard;
-pub mod msm;
-pub mod packet;
-pub mod pcf;
+// TODO(convert) pub mod alias_free;
+// TODO(convert) pub mod backprojection;
+// TODO(convert) pub mod light_sampling;
+// TODO(convert) pub mod moments;
 pub mod pcss;
-pub mod prefiltered;
-pub mod pvssm;
-pub mod savsm;
-pub mod smooth_pcss;
-pub mod ssm;
-pub mod subpixel;
-pub mod summed;
-pub mod uniform_sampling;
-pub mod vsm;
-pub mod vssm;
+// TODO(convert) pub mod pvssm;
+pub mod shadow_map;
+pub mod spec;
+// TODO(convert) pub mod ssm;
 
 /// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
 pub const TECHNIQUES: &[TechniqueInfo] = &[
-    entry::<hard::Hard>(),
-    entry::<pcf::Pcf>(),
+    entry::<shadow_map::hard::Hard>(),
+    entry::<shadow_map::pcf::Pcf>(),
     entry::<pcss::Pcss>(),
-    entry::<smooth_pcss::SmoothPcss>(),
-    entry::<ssm::Ssm>(),
-    entry::<vsm::Vsm>(),
-    entry::<evsm::Evsm>(),
-    entry::<msm::Msm>(),
-    entry::<esm::Esm>(),
-    entry::<csm::Csm>(),
-    entry::<savsm::Savsm>(),
-    entry::<vssm::Vssm>(),
-    entry::<cssm::Cssm>(),
-    entry::<backprojection::Backprojection>(),
-    entry::<packet::Packet>(),
-    entry::<pvssm::Pvssm>(),
-    entry::<fvsm::Fvsm>(),
-    entry::<subpixel::Subpixel>(),
-    entry::<uniform_sampling::UniformSampling>(),
-    entry::<adaptive_sampling::AdaptiveSampling>(),
-    entry::<alias_free::AliasFree>(),
-    entry::<alias_free_soft::AliasFreeSoft>(),
+    entry::<pcss::SmoothPcss>(),
+    // TODO(convert) entry::<ssm::Ssm>(),
+    // TODO(convert) entry::<moments::vsm::Vsm>(),
+    // TODO(convert) entry::<moments::evsm::Evsm>(),
+    // TODO(convert) entry::<moments::msm::Msm>(),
+    // TODO(convert) entry::<moments::esm::Esm>(),
+    // TODO(convert) entry::<moments::csm::Csm>(),
+    // TODO(convert) entry::<moments::savsm::Savsm>(),
+    // TODO(convert) entry::<moments::vssm::Vssm>(),
+    // TODO(convert) entry::<moments::cssm::Cssm>(),
+    // TODO(convert) entry::<backprojection::Backprojection>(),
+    // TODO(convert) entry::<backprojection::packet::Packet>(),
+    // TODO(convert) entry::<pvssm::Pvssm>(),
+    // TODO(convert) entry::<pvssm::fvsm::Fvsm>(),
+    // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),
+    // TODO(convert) entry::<light_sampling::uniform::UniformSampling>(),
+    // TODO(convert) entry::<light_sampling::adaptive::AdaptiveSampling>(),
+    // TODO(convert) entry::<alias_free::hard::AliasFree>(),
+    // TODO(convert) entry::<alias_free::soft::AliasFreeSoft>(),
 ];

@@ -73,7 +73,7 @@ fn every_scene_has_the_shadow_of_the_rays_but_on_edges() {
 #[test]
 fn the_picture_does_not_depend_on_the_map() {
     let renderer = drawn(&with_point_light(builtin("cage")), SIZE);
-    let by = |spec: &str| shadowed(&renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{spec}: {e}"));
+    let by = |spec: &str| shadowed(&renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{spec}: {e}"));
     let fine = by("alias-free:map=2048");
     for spec in ["alias-free", "alias-free:map=500", "alias-free:map=67", "alias-free:map=16"] {
         assert!(by(spec) == fine, "{spec} differs from 2048 texels");

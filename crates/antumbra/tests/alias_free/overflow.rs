@@ -32,7 +32,7 @@ fn slivers(count: u32) -> Scene {
 
 /// Of the last frame: what was needed, and the room that there was.
 fn needed_and_room(technique: &dyn antumbra::Technique) -> [f64; 2] {
-    let figures = block_on(technique.figures(gpu())).unwrap_or_else(|e| panic!("{e}"));
+    let figures = block_on(technique.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
     let of = |name| figures.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no {name} in {figures:?}")).1;
     [of("triangle-texel pairs").max(of("triangle-block pairs")), of("room for pairs")]
 }
@@ -42,7 +42,7 @@ fn a_frame_without_room_has_the_same_picture() {
     let scene = slivers(700);
     let renderer = drawn(&scene, SIZE);
     let truth = truth(&scene, SIZE, 1);
-    let roomy = shadowed(&renderer, &mut *technique("alias-free:map=512")).expect("records");
+    let roomy = shadowed(&renderer, &mut technique("alias-free:map=512")).expect("records");
     let dark = roomy.iter().filter(|v| **v == 0.0).count();
     assert!(dark > 200 && dark < 8900, "{dark} pixels are dark");
     let wrong = differing(&roomy, &truth.visibility, &truth.valid);
@@ -50,7 +50,7 @@ fn a_frame_without_room_has_the_same_picture() {
     for spec in ["alias-free:map=512,budget=0", "alias-free:map=512,budget=1"] {
         let mut small = technique(spec);
         for frame in 0..2 {
-            let picture = shadowed(&renderer, &mut *small).expect("records");
+            let picture = shadowed(&renderer, &mut small).expect("records");
             assert!(picture == roomy, "{spec}, frame {frame}: the picture differs");
             let [needed, room] = needed_and_room(&*small);
             assert!(needed > room, "{spec} should break: {needed} pairs, room for {room}");
@@ -66,7 +66,7 @@ fn room_grows_to_what_frames_need() {
     let mut rooms = Vec::new();
     let mut pictures = Vec::new();
     for _ in 0..4 {
-        pictures.push(shadowed(&renderer, &mut *one).expect("records"));
+        pictures.push(shadowed(&renderer, &mut one).expect("records"));
         rooms.push(needed_and_room(&*one));
     }
     assert!(rooms[0][0] > rooms[0][1], "the first frame should have too little room: {rooms:?}");

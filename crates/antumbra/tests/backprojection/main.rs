@@ -32,7 +32,7 @@ impl Judged {
     }
 
     fn picture(&self, spec: &str) -> Vec<f32> {
-        shadowed(&self.renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{} by {spec}: {e}", self.name))
+        shadowed(&self.renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{} by {spec}: {e}", self.name))
     }
 
     fn figures(&self, spec: &str) -> Figures {

@@ -4,7 +4,7 @@
 pub mod closed_form;
 
 use antumbra::scene::SceneRenderer;
-use antumbra::{AdapterChoice, Gpu, Recorder, Spec, Technique};
+use antumbra::{AdapterChoice, Error, Gpu, Shadows, Spec};
 use antumbra_metrics::{Figures, Image, figures};
 use antumbra_reference::{Reference, Settings, trace};
 use antumbra_scene::{Camera, Instance, Material, Mesh, RectLight, Scene};
@@ -32,39 +32,40 @@ pub fn quick(info: &antumbra::TechniqueInfo) -> String {
 }
 
 /// A technique from its SPEC.
-pub fn technique(spec: &str) -> Box<dyn Technique> {
+pub fn technique(spec: &str) -> Shadows {
     spec.parse::<Spec>().unwrap_or_else(|e| panic!("{e}")).make(gpu()).unwrap_or_else(|e| panic!("{spec}: {e}"))
 }
 
 /// A scene with its geometry buffer drawn.
 pub fn drawn(scene: &Scene, size: [u32; 2]) -> SceneRenderer {
-    let renderer = SceneRenderer::new(gpu(), scene, size).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
-    submit(|recorder| renderer.record_geometry(recorder)).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+    let mut renderer = SceneRenderer::new(gpu(), scene, size).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+    submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     renderer
 }
 
 /// Records and submits, with every validation error returned.
-pub fn submit(record: impl FnOnce(&mut Recorder) -> Result<(), antumbra::Error>) -> Result<(), antumbra::Error> {
+pub fn submit(record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), Error>) -> Result<(), Error> {
     let gpu = gpu();
     block_on(gpu.checked(|| {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        record(&mut Recorder::new(gpu, &mut encoder))?;
+        record(&mut encoder)?;
         gpu.queue.submit([encoder.finish()]);
         Ok(())
     }))
 }
 
-/// What a technique makes of a drawn scene. The texture is spoilt before, so that a pixel that nobody writes is seen.
-pub fn shadowed(renderer: &SceneRenderer, technique: &mut dyn Technique) -> Result<Vec<f32>, antumbra::Error> {
-    let [width, height] = renderer.frame.geometry.size;
+/// The visibility of a drawn scene by a technique. The texture is overwritten before, so that a pixel that nobody writes
+/// is seen.
+pub fn shadowed(renderer: &SceneRenderer, shadows: &mut Shadows) -> Result<Vec<f32>, Error> {
+    let [width, height] = renderer.frame.size;
     renderer.write_visibility(gpu(), &vec![-7.0; (width * height) as usize]);
-    submit(|recorder| renderer.record_shadow(technique, recorder))?;
+    submit(|encoder| shadows.record(gpu(), encoder, &renderer.frame))?;
     block_on(renderer.read_visibility(gpu()))
 }
 
 /// Visibility of a scene by a technique.
 pub fn visibility(scene: &Scene, spec: &str, size: [u32; 2]) -> Vec<f32> {
-    shadowed(&drawn(scene, size), &mut *technique(spec)).unwrap_or_else(|e| panic!("{} by {spec}: {e}", scene.name))
+    shadowed(&drawn(scene, size), &mut technique(spec)).unwrap_or_else(|e| panic!("{} by {spec}: {e}", scene.name))
 }
 
 /// The truth at the middle of every pixel, which is where techniques look.

@@ -31,12 +31,12 @@ fn picture(renderer: &SceneRenderer, technique: &mut dyn Technique) -> Vec<f32> 
 
 /// A picture by a new instance.
 fn fresh(renderer: &SceneRenderer, spec: &str) -> Vec<f32> {
-    shadowed(renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{spec}: {e}"))
+    shadowed(renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{spec}: {e}"))
 }
 
 /// A figure of the last frame.
 fn figure(technique: &dyn Technique, name: &str) -> u32 {
-    let figures = block_on(technique.figures(gpu())).unwrap_or_else(|e| panic!("{e}"));
+    let figures = block_on(technique.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
     let found = figures.iter().find(|(n, _)| *n == name);
     found.unwrap_or_else(|| panic!("no `{name}` among {figures:?}")).1 as u32
 }

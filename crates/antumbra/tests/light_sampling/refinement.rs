@@ -15,7 +15,7 @@ fn a_budget_of_maps_is_kept_and_spent_once() {
         let (renderer, truth) = (seen(&scene), truth(&scene, SIZE, 1024));
         for budget in [4, 5, 8, 20, 63] {
             let mut adaptive = technique(&format!("adaptive-sampling:tolerance=0,map=128,maps={budget}"));
-            let found = picture(&renderer, &mut *adaptive);
+            let found = picture(&renderer, &mut adaptive);
             let (maps, drawn) = (figure(&*adaptive, "maps"), figure(&*adaptive, "maps drawn"));
             let error = compared(&found, &truth).average_error;
             println!("light of {size} m: {maps} maps of {budget}, {drawn} drawn, error {error:.4}");
@@ -33,7 +33,7 @@ fn a_budget_of_maps_is_kept_and_spent_once() {
 /// Figures and number of maps.
 fn spent(renderer: &SceneRenderer, truth: &Reference, settings: &str) -> (Figures, u32) {
     let mut adaptive = technique(&format!("adaptive-sampling:map=256,{settings}"));
-    let found = picture(renderer, &mut *adaptive);
+    let found = picture(renderer, &mut adaptive);
     (compared(&found, truth), figure(&*adaptive, "maps"))
 }
 
@@ -90,7 +90,7 @@ fn far_away_shadows_take_fewer_maps_unless_the_light_s_view_decides() {
             renderer.frame.update(gpu(), View::of_camera(&eye, SIZE), light, frustum);
             submit(|recorder| renderer.record_geometry(recorder)).unwrap_or_else(|e| panic!("{e}"));
             let mut adaptive = technique(&format!("adaptive-sampling:{settings}"));
-            picture(&renderer, &mut *adaptive);
+            picture(&renderer, &mut adaptive);
             figure(&*adaptive, "maps")
         })
     };

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// A box over the ground, whose host says that no caster moves.
 fn resting() -> SceneRenderer {
     let mut renderer = seen(&hovering(Vec2::new(0.9, 0.7)));
-    renderer.frame.casters_rest = true;
+    renderer.frame.static_casters = true;
     renderer
 }
 
@@ -39,7 +39,7 @@ fn maps_of_resting_casters_are_drawn_once() {
         let mut renderer = resting();
         let mut kept = technique(&spec);
         let mut frame = |renderer: &SceneRenderer, what: &str| {
-            let found = picture(renderer, &mut *kept);
+            let found = picture(renderer, &mut kept);
             assert_same(&found, &fresh(renderer, &spec), &format!("{settings}: {what}, a used instance and a new one"));
             let (maps, drawn) = (figure(&*kept, "maps"), figure(&*kept, "maps drawn"));
             println!("{settings}: {what}: {maps} maps, {drawn} drawn");
@@ -61,7 +61,7 @@ fn maps_of_resting_casters_are_drawn_once() {
         change(&mut renderer, &near(), Vec3::new(0.1, 0.0, 0.2));
         let (_, maps, drawn) = frame(&renderer, "the light moves");
         assert_eq!(drawn, maps, "{settings}: maps drawn as the light moves");
-        renderer.frame.casters_rest = false;
+        renderer.frame.static_casters = false;
         let (_, maps, drawn) = frame(&renderer, "casters move");
         assert_eq!(drawn, maps, "{settings}: maps drawn as casters move");
     }
@@ -74,7 +74,7 @@ fn fixed_samples_of_resting_casters_are_drawn_once() {
         let mut renderer = resting();
         let mut kept = technique(&spec);
         let mut frame = |renderer: &SceneRenderer, what: &str| {
-            let found = picture(renderer, &mut *kept);
+            let found = picture(renderer, &mut kept);
             let is_drawn = figure(&*kept, "maps drawn") > 0;
             assert_same(&found, &fresh(renderer, &spec), &format!("{way}: {what}, a used instance and a new one"));
             is_drawn
@@ -85,7 +85,7 @@ fn fixed_samples_of_resting_casters_are_drawn_once() {
         assert_eq!(frame(&renderer, "the camera moves"), !keeps, "{way}: maps drawn as the camera moves");
         change(&mut renderer, &near(), Vec3::new(0.1, 0.0, 0.2));
         assert!(frame(&renderer, "the light moves"), "{way}: no maps drawn as the light moves");
-        renderer.frame.casters_rest = false;
+        renderer.frame.static_casters = false;
         assert!(frame(&renderer, "casters move"), "{way}: no maps drawn as casters move");
     }
 }
@@ -104,16 +104,16 @@ fn a_used_instance_follows_the_light_s_shape_and_other_casters() {
         for other in [size, Vec2::new(0.9, 0.0), Vec2::new(0.0, 0.7), Vec2::ZERO, size, Vec2::new(0.7, 0.9)] {
             renderer.frame.light.size = other;
             change(&mut renderer, &near(), Vec3::ZERO);
-            let (by_kept, by_new) = (picture(&renderer, &mut *kept), fresh(&renderer, spec));
+            let (by_kept, by_new) = (picture(&renderer, &mut kept), fresh(&renderer, spec));
             assert_same(&by_kept, &by_new, &format!("{spec}, a light of {other} m"));
         }
         // As many triangles, at another place.
         let mut moved = hovering(size);
         moved.meshes[1] = cuboid([-0.3, 0.9, -0.3], [0.6, 1.2, 0.35]);
-        let before = picture(&renderer, &mut *kept);
+        let before = picture(&renderer, &mut kept);
         renderer.frame.casters = Arc::new(upload(gpu(), &moved).unwrap_or_else(|e| panic!("{e}")));
         change(&mut renderer, &near(), Vec3::ZERO);
-        let after = picture(&renderer, &mut *kept);
+        let after = picture(&renderer, &mut kept);
         assert!(after != before, "{spec}: the moved box casts the same shadow");
         assert_same(&after, &fresh(&renderer, spec), &format!("{spec}, other casters"));
     }

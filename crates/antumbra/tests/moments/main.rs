@@ -63,7 +63,7 @@ fn anisotropic_filtering_is_near_the_truth_on_a_plane_at_a_grazing_angle() {
     let renderer = drawn(&scene, size);
     let plain = on_the_plain(&scene, size);
     let rmse = |spec: &str| {
-        let picture = shadowed(&renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{e}"));
+        let picture = shadowed(&renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{e}"));
         let square = |i: &usize| f64::from(picture[*i] - truth.visibility[*i]).powi(2);
         let valid = plain.iter().filter(|i| truth.valid[**i]);
         let rmse = (valid.clone().map(square).sum::<f64>() / valid.count().max(1) as f64).sqrt();
@@ -86,7 +86,7 @@ fn four_moments_leak_less_than_a_fifth_of_what_two_do() {
     let umbra = inner(&truth, 2, |v| v < 0.001);
     let renderer = drawn(&scene, [256, 256]);
     let leak = |spec: &str| {
-        let picture = shadowed(&renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{e}"));
+        let picture = shadowed(&renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{e}"));
         let leak = mean(&picture, &umbra);
         println!("{spec}: leak {leak:.5} over {} pixels", umbra.len());
         leak
@@ -135,7 +135,7 @@ fn the_border_of_the_map_does_not_bleed() {
 fn the_split_format_is_as_good_as_32_bits_in_a_picture_and_16_bits_are_not() {
     let scene = hard("bumpy:side=96");
     let renderer = drawn(&scene, [128, 96]);
-    let picture = |spec: &str| shadowed(&renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{e}"));
+    let picture = |spec: &str| shadowed(&renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{e}"));
     let full = picture("vsm:format=rg32float");
     let off = |spec: &str| {
         let other = picture(spec);
@@ -153,7 +153,7 @@ fn soft_shadows_of_moments_follow_the_lights_size() {
     let renderer = drawn(&scene, [160, 160]);
     let truth = filtered_truth(&scene, [160, 160], 4);
     let error = |spec: &str| {
-        let picture = shadowed(&renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{e}"));
+        let picture = shadowed(&renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{e}"));
         let f = compared(&picture, &truth);
         println!("{spec}: average {:.4}, leak {:.4}, acne {:.4}", f.average_error, f.leak, f.acne);
         f.average_error

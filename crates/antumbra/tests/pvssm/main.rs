@@ -16,7 +16,7 @@ use std::sync::atomic::AtomicBool;
 const SIZE: [u32; 2] = [128, 128];
 
 fn figure(technique: &dyn Technique, name: &str) -> f64 {
-    let figures = block_on(technique.figures(gpu())).unwrap_or_else(|e| panic!("{e}"));
+    let figures = block_on(technique.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
     figures.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no figure {name}")).1
 }
 
@@ -31,7 +31,7 @@ fn judged(scene: &Scene, specs: &[&str], light_samples: u32) -> Vec<Figures> {
     let (renderer, truth) = (drawn(scene, SIZE), truth(scene, light_samples));
     let judge = |spec: &&str| {
         let picture =
-            shadowed(&renderer, &mut *technique(spec)).unwrap_or_else(|e| panic!("{}, {spec}: {e}", scene.name));
+            shadowed(&renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{}, {spec}: {e}", scene.name));
         compared(&picture, &truth)
     };
     specs.iter().map(judge).collect()
@@ -56,15 +56,15 @@ fn hard_shadows_are_those_of_the_point_at_the_lights_centre() {
         let soft = scene.light.size;
         scene.light.size = Vec2::ZERO;
         let (renderer, point) = (drawn(&scene, SIZE), truth(&scene, 16));
-        let by_point = shadowed(&renderer, &mut *technique("fvsm")).unwrap_or_else(|e| panic!("{e}"));
+        let by_point = shadowed(&renderer, &mut technique("fvsm")).unwrap_or_else(|e| panic!("{e}"));
         let error = compared(&by_point, &point).average_error;
-        let hard = shadowed(&renderer, &mut *technique("hard")).unwrap_or_else(|e| panic!("{e}"));
+        let hard = shadowed(&renderer, &mut technique("hard")).unwrap_or_else(|e| panic!("{e}"));
         let of_hard = compared(&hard, &point).average_error;
         println!("{name}: {error:.4}, one map of 2048 texels {of_hard:.4}");
         assert!(error < of_hard, "{name}: {error} (hard: {of_hard})");
         // A light with a size makes no difference.
         scene.light.size = soft;
-        let wide = shadowed(&drawn(&scene, SIZE), &mut *technique("fvsm")).unwrap_or_else(|e| panic!("{e}"));
+        let wide = shadowed(&drawn(&scene, SIZE), &mut technique("fvsm")).unwrap_or_else(|e| panic!("{e}"));
         let far = wide.iter().zip(&by_point).filter(|(a, b)| (**a - **b).abs() > 0.5).count();
         assert!(far < 60, "{name}: {far} pixels change with the light's size");
     }
@@ -82,8 +82,8 @@ fn no_discretisation_shows_from_a_hand_s_breadth_to_a_hundred_metres() {
         scene.camera.eye = target + direction * distance;
         let (renderer, exact) = (drawn(&scene, SIZE), truth(&scene, 256));
         let mut one = technique("pvssm");
-        let picture = shadowed(&renderer, &mut *one).unwrap_or_else(|e| panic!("{e}"));
-        let fine = shadowed(&renderer, &mut *technique("pvssm:detail=6,rounds=16")).unwrap_or_else(|e| panic!("{e}"));
+        let picture = shadowed(&renderer, &mut one).unwrap_or_else(|e| panic!("{e}"));
+        let fine = shadowed(&renderer, &mut technique("pvssm:detail=6,rounds=16")).unwrap_or_else(|e| panic!("{e}"));
         let (of_truth, of_fine) = (compared(&picture, &exact), {
             let mut finer = exact.clone();
             finer.visibility.clone_from(&fine);
@@ -110,7 +110,7 @@ fn memory_of_maps_is_within_the_budget_whatever_is_drawn() {
     let maps = ["low-resolution map", "depth pyramid", "tile grid", "tile decision", "tiles", "tile pyramid"];
     for spec in ["pvssm", "pvssm:detail=8", "fvsm"] {
         let mut one = technique(spec);
-        shadowed(&drawn(&builtin("plant"), SIZE), &mut *one).unwrap_or_else(|e| panic!("{e}"));
+        shadowed(&drawn(&builtin("plant"), SIZE), &mut one).unwrap_or_else(|e| panic!("{e}"));
         let bytes: u64 = one.memory().iter().filter(|m| maps.contains(&m.pass)).map(|m| m.bytes).sum();
         println!("{spec}: {:.1} MB of maps, {} tiles", bytes as f64 * 1e-6, figure(&*one, "tiles"));
         assert!(bytes > 16_000_000 && bytes < 48_000_000, "{spec}: {bytes} bytes");
@@ -122,7 +122,7 @@ fn soft_shadows_need_fewer_texels_than_hard_ones() {
     let renderer = drawn(&builtin("square"), SIZE);
     let [soft, hard] = ["pvssm", "fvsm"].map(|spec| {
         let mut one = technique(spec);
-        shadowed(&renderer, &mut *one).unwrap_or_else(|e| panic!("{e}"));
+        shadowed(&renderer, &mut one).unwrap_or_else(|e| panic!("{e}"));
         figure(&*one, "megatexels")
     });
     println!("megatexels: soft {soft}, hard {hard}");

@@ -65,8 +65,8 @@ fn equation_4_tells_which_patches_are_lost() {
     let frame = &renderer.frame;
     let lost = |map: u32| {
         let mut ssm = technique(&format!("ssm:map={map},passes=1,hierarchy=false"));
-        shadowed(&renderer, &mut *ssm).unwrap();
-        let figures = block_on(ssm.figures(gpu())).unwrap();
+        shadowed(&renderer, &mut ssm).unwrap();
+        let figures = block_on(ssm.stats(gpu())).unwrap();
         let (_, lost) = figures.iter().find(|(name, _)| *name == "float16 loses").unwrap();
         let limit = largest_float16_q(1.0 / frame.frustum.receivers[1], frame.frustum.tan_half.x, map as f32, 2.0);
         (*lost > 0.0, limit)

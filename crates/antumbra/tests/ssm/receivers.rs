@@ -3,8 +3,8 @@
 use crate::common::closed_form::pixel_ray;
 use crate::common::{camera, compared, cuboid, ground, light, quad, scene, truth};
 use crate::{SIZE, in_range};
-use antumbra::casters::Role;
-use antumbra::roles::roles;
+use antumbra::input::casters::Role;
+use antumbra::input::classification::roles;
 use antumbra_scene::Scene;
 use glam::DVec2;
 

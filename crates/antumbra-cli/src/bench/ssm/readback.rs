@@ -4,8 +4,8 @@
 use super::stage::Stage;
 use super::truth::floats;
 use crate::error::CliError;
-use antumbra::recorder::Recorder;
-use antumbra::resource::Texture;
+use antumbra::gpu::recorder::Recorder;
+use antumbra::gpu::resource::Texture;
 use antumbra::techniques::ssm::Ssm;
 use antumbra::{Frame, Gpu};
 use pollster::block_on;
@@ -161,7 +161,7 @@ impl Rectangles {
             usage: wgpu::BufferUsages::VERTEX,
         });
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let color = [antumbra::recorder::color_target(&self.target.view, wgpu::Color::TRANSPARENT)];
+        let color = [antumbra::gpu::recorder::color_target(&self.target.view, wgpu::Color::TRANSPARENT)];
         Recorder::new(gpu, &mut encoder).render_pass("rectangles of the CPU", &color, None, |_, pass| {
             pass.set_pipeline(&self.pipeline);
             pass.set_bind_group(0, &self.group, &[]);

@@ -6,7 +6,7 @@ use crate::error::CliError;
 use crate::report::text;
 use crate::{measure, setup};
 use antumbra::scene::SceneRenderer;
-use antumbra::techniques::subpixel::SubpixelSettings;
+use antumbra::techniques::alias_free::subpixel::SubpixelSettings;
 use antumbra::{Error, Spec};
 use antumbra_metrics::RgbImage;
 use antumbra_reference::{Reference, trace_centre};

@@ -1,23 +1,27 @@
 //! Layered back-projection: every patch of the map that rises above the receiver's plane is projected from the receiver
 //! to the light, and the light's points that it covers are taken from the light [Guennebaud 2006, 2007].
 
-use crate::frame::FrameUniform;
-use crate::passes::{
-    classify::{Listing, PenumbraList},
-    depth_layers::DepthLayers,
-    depth_pyramid::DepthPyramid,
-    patch_pyramid::PatchPyramid,
-    sparse::SparsePixels,
-};
-use crate::pipeline::{Binding, ComputePipeline};
-use crate::recorder::{Recorder, Work};
-use crate::resource::uniform;
-use crate::shader::ShaderKey;
-use crate::technique::{About, Describe, InnerPicture, Memory, Technique};
-use crate::{Error, Frame, Gpu, bindings, gpu_struct};
+use crate::input::frame::FrameUniform;
+use crate::passes::pixels::classify::{Listing, PenumbraList};
+use crate::passes::maps::depth_layers::DepthLayers;
+use crate::passes::maps::depth_pyramid::DepthPyramid;
+use crate::passes::maps::patch_pyramid::PatchPyramid;
+use crate::passes::pixels::sparse::SparsePixels;
+use crate::gpu::pipeline::{Binding, ComputePipeline};
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::uniform;
+use crate::gpu::shader::ShaderKey;
+use crate::technique::{TechniqueAbout, TechniqueFactory, InnerPicture, Memory, Technique};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::{bindings, gpu_struct};
 use serde_json::{Map, Value};
 use std::sync::Arc;
 
+#[cfg(test)]
+mod mask;
+pub mod packet;
 mod settings;
 
 pub use settings::{BackprojectionSettings, Bits, Join, Quality, Spacing};
@@ -48,9 +52,9 @@ pub struct Backprojection {
     sparse: Option<SparsePixels>,
 }
 
-impl Describe for Backprojection {
+impl TechniqueFactory for Backprojection {
     type Settings = BackprojectionSettings;
-    const ABOUT: About = About {
+    const ABOUT: TechniqueAbout = TechniqueAbout {
         name: "backprojection",
         title: "Layered back-projection",
         source: "Guennebaud 2006, 2007",
@@ -78,9 +82,7 @@ impl Backprojection {
             .feature(settings.bits.feature(), true)
             .feature("sum", settings.join == Join::Sum)
             .feature("flat", !settings.gaps_filled)
-            .feature("sparse", settings.spacing != Spacing::S1)
-            .with::<FrameUniform>()
-            .with::<BackprojectionUniform>();
+            .feature("sparse", settings.spacing != Spacing::S1);
         let value = BackprojectionUniform {
             layers: settings.layers,
             leaf: 1.0 / settings.window,
@@ -112,7 +114,7 @@ impl Technique for Backprojection {
             self.settings.apart,
         )?;
         let map = &maps.nearest;
-        let list = PenumbraList::ensure(&mut self.list, gpu, frame.geometry.size);
+        let list = PenumbraList::ensure(&mut self.list, gpu, frame.size);
         let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
         let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
         patches.record(recorder, maps, frame.frustum.near, maps.gap(frame, self.settings.apart))?;
@@ -136,7 +138,7 @@ impl Technique for Backprojection {
             look(recorder, list, &[]);
             return Ok(());
         }
-        let sparse = SparsePixels::ensure(&mut self.sparse, gpu, frame.geometry.size, spacing);
+        let sparse = SparsePixels::ensure(&mut self.sparse, gpu, frame.size, spacing);
         sparse.record(recorder, frame, list, |recorder, chosen| {
             look(recorder, chosen, bindings! { sharpness: &sparse.sharpness });
         })

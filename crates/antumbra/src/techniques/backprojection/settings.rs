@@ -1,6 +1,6 @@
 //! What can be set.
 
-use crate::settings::Kind;
+use crate::technique::settings::Kind;
 use serde_json::{Map, Value};
 
 crate::choices! {
@@ -56,7 +56,7 @@ crate::choices! {
 }
 
 crate::settings! {
-    /// Settings of [`Backprojection`](super::Backprojection) and [`Packet`](crate::techniques::packet::Packet).
+    /// Settings of [`Backprojection`](super::Backprojection) and [`Packet`](crate::techniques::backprojection::packet::Packet).
     pub struct BackprojectionSettings {
         /// Where the other settings start from.
         quality: Quality = Quality::Balanced, Kind::Choice { options: Quality::OPTIONS };

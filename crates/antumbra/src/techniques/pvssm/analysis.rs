@@ -3,17 +3,18 @@
 
 use super::plan::Plan;
 use super::{PvssmSettings, PvssmUniform};
-use crate::frame::FrameUniform;
-use crate::passes::{
-    classify::{Listing, PenumbraList},
-    depth_map::DepthMap,
-    depth_pyramid::DepthPyramid,
-};
-use crate::recorder::{Recorder, Work};
-use crate::resource::storage_buffer;
-use crate::shader::ShaderKey;
+use crate::input::frame::FrameUniform;
+use crate::passes::pixels::classify::{Listing, PenumbraList};
+use crate::passes::maps::depth_map::DepthMap;
+use crate::passes::maps::depth_pyramid::DepthPyramid;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::storage_buffer;
+use crate::gpu::shader::ShaderKey;
 use crate::technique::{InnerContent, InnerPicture, Memory};
-use crate::{Error, Frame, Gpu, bindings};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::bindings;
 
 /// Label of the low-resolution map's pass.
 const MAP: &str = "low-resolution map";
@@ -40,7 +41,7 @@ impl Analysis {
         frame: &Frame,
         settings: &PvssmSettings,
     ) -> Result<&'a Analysis, Error> {
-        let size = frame.geometry.size;
+        let size = frame.size;
         if !slot.as_ref().is_some_and(|a| a.map.fits(settings.map, &frame.casters) && a.list.size() == size) {
             let pixels = u64::from(size[0]) * u64::from(size[1]);
             *slot = Some(Analysis {
@@ -68,8 +69,8 @@ impl Analysis {
 
     /// Finds the kernel of each listed pixel; what has no occluder is lit and has none.
     pub fn shape_kernels(&self, frame: &Frame, recorder: &mut Recorder, plan: &Plan) -> Result<(), Error> {
-        let key = ShaderKey::new("techniques::pvssm::kernels").with::<FrameUniform>().with::<PvssmUniform>();
-        let key = key.with::<super::plan::Tile>();
+        let key = ShaderKey::new("techniques::pvssm::kernels");
+        let key = key;
         let pipeline = recorder.gpu.compute_pipeline(&key, "shape_kernels")?;
         let set = frame.bindings(bindings! {
             depth_map: &self.map.texture,

@@ -3,15 +3,18 @@
 
 use super::plan::{LARGEST_NODE, MOST_OF_ROUND, MOST_ROUNDS, Plan, Tile};
 use super::{PvssmSettings, PvssmUniform};
-use crate::casters::{BatchLayout, CLUSTER_TRIANGLES, Casters};
-use crate::frame::FrameUniform;
-use crate::passes::culling::MapView;
-use crate::pipeline::RenderTarget;
-use crate::recorder::{Recorder, Work};
-use crate::resource::{Texture, UniformArray, buffer_of, storage_buffer, uniform};
-use crate::shader::{HostStruct, ShaderKey};
+use crate::input::casters::{BatchLayout, CLUSTER_TRIANGLES, Casters};
+use crate::input::frame::FrameUniform;
+use crate::input::map_view::MapView;
+use crate::gpu::pipeline::RenderTarget;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::{Texture, UniformArray, buffer_of, storage_buffer, uniform};
+use crate::gpu::shader::{HostStruct, ShaderKey};
 use crate::technique::{InnerPicture, Memory};
-use crate::{Error, Frame, Gpu, bindings, gpu_struct};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::{bindings, gpu_struct};
 use glam::Mat4;
 
 gpu_struct! {
@@ -69,11 +72,11 @@ impl Drawing {
     }
 
     fn visible_bytes(casters: &Casters) -> u64 {
-        (u64::from(casters.item_count) * MOST_OF_ROUND as u64 * 4).max(16)
+        (u64::from(casters.cluster_count) * MOST_OF_ROUND as u64 * 4).max(16)
     }
 
     fn new(gpu: &Gpu, casters: &Casters, settings: &PvssmSettings) -> Result<Drawing, Error> {
-        if casters.item_count >= MOST_CLUSTERS {
+        if casters.cluster_count >= MOST_CLUSTERS {
             let most = u64::from(MOST_CLUSTERS) * u64::from(CLUSTER_TRIANGLES);
             return Err(Error::Validation(format!("tiles can be drawn of {most} triangles at most")));
         }
@@ -99,8 +102,8 @@ impl Drawing {
     }
 
     fn key(module: &'static str) -> ShaderKey {
-        let key = ShaderKey::new(module).with::<MapView>().with::<BatchLayout>().with::<RoundUniform>();
-        key.with::<PvssmUniform>().with::<Tile>()
+        let key = ShaderKey::new(module);
+        key
     }
 
     /// Draws the tiles of a round that are not kept.
@@ -125,7 +128,7 @@ impl Drawing {
         recorder.compute_pass(CULLING, |gpu, pass| {
             pass.set_pipeline(&cull.pipeline);
             pass.set_bind_group(0, &cull.bind_group(gpu, 0, set), &[]);
-            for (i, batch) in casters.batches.iter().enumerate().filter(|(_, b)| b.item_count > 0) {
+            for (i, batch) in casters.batches.iter().enumerate().filter(|(_, b)| b.cluster_count > 0) {
                 pass.set_bind_group(1, &cull.bind_group(gpu, 1, &batch.bindings(casters)), &[]);
                 pass.dispatch_workgroups_indirect(&plan.arguments, plan.cull_offset(round, i));
             }
@@ -154,7 +157,7 @@ impl Drawing {
 
     /// Makes the pyramid over the tiles of a round.
     pub fn reduce_tiles(&self, frame: &Frame, recorder: &mut Recorder, plan: &Plan, round: u32) -> Result<(), Error> {
-        let key = ShaderKey::new("techniques::pvssm::reduce_tiles").with::<FrameUniform>();
+        let key = ShaderKey::new("techniques::pvssm::reduce_tiles");
         for (step, levels) in self.levels.chunks_exact(2).enumerate() {
             let key = key.clone().feature("first", step == 0);
             let pipeline = recorder.gpu.compute_pipeline(&key, "reduce_tiles")?;

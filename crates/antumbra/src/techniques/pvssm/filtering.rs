@@ -3,12 +3,15 @@
 use super::drawing::{Drawing, RoundUniform};
 use super::plan::{MOST_ROUNDS, Plan, Tile};
 use super::{PvssmSettings, PvssmUniform, analysis::Analysis};
-use crate::frame::FrameUniform;
-use crate::recorder::{Recorder, Work, dispatch};
-use crate::resource::storage_buffer;
-use crate::shader::ShaderKey;
+use crate::input::frame::FrameUniform;
+use crate::gpu::recorder::{Recorder, Work, dispatch};
+use crate::gpu::resources::storage_buffer;
+use crate::gpu::shader::ShaderKey;
 use crate::technique::Memory;
-use crate::{Error, Frame, Gpu, bindings};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::bindings;
 
 const BINS: &str = "pixel bins";
 const FILTER: &str = "filter";
@@ -44,8 +47,8 @@ impl Filtering {
     }
 
     fn key(module: &'static str) -> ShaderKey {
-        let key = ShaderKey::new(module).with::<FrameUniform>().with::<PvssmUniform>();
-        key.with::<Tile>().with::<RoundUniform>()
+        let key = ShaderKey::new(module);
+        key
     }
 
     /// Lists the blocks of pixels that each round visits.

@@ -10,6 +10,7 @@ pub(crate) mod decide;
 pub(crate) mod drawing;
 pub(crate) mod filtering;
 pub(crate) mod plan;
+pub mod fvsm;
 pub mod rho;
 pub mod settings;
 #[cfg(test)]
@@ -17,12 +18,15 @@ mod tests;
 
 pub use settings::{Decision, PvssmSettings, Rho};
 
-use crate::passes::light_maps::Drawn;
-use crate::recorder::Recorder;
-use crate::settings::SpecError;
-use crate::shader::Needs;
-use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
-use crate::{Error, Frame, Gpu, gpu_struct};
+use crate::passes::maps::light_maps::Drawn;
+use crate::gpu::recorder::Recorder;
+use crate::error::SpecError;
+use crate::gpu::shader::Needs;
+use crate::technique::{TechniqueAbout, TechniqueFactory, StatsFuture, InnerPicture, Memory, Technique};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::gpu_struct;
 use analysis::Analysis;
 use drawing::Drawing;
 use filtering::Filtering;
@@ -96,9 +100,9 @@ pub struct Pvssm {
     drawn: Option<Drawn>,
 }
 
-impl Describe for Pvssm {
+impl TechniqueFactory for Pvssm {
     type Settings = PvssmSettings;
-    const ABOUT: About = About {
+    const ABOUT: TechniqueAbout = TechniqueAbout {
         name: "pvssm",
         title: "Predicted virtual soft shadow maps",
         source: "Shen 2011",
@@ -114,7 +118,7 @@ impl Describe for Pvssm {
 }
 
 impl Pvssm {
-    /// The technique under another name: [`Fvsm`](crate::techniques::fvsm::Fvsm) is one.
+    /// The technique under another name: [`Fvsm`](crate::techniques::pvssm::fvsm::Fvsm) is one.
     pub(crate) fn new(gpu: &Gpu, name: &str, settings: PvssmSettings) -> Result<Pvssm, Error> {
         if !settings.grid.is_power_of_two() {
             return Err(Error::Spec(SpecError::Value {
@@ -146,10 +150,10 @@ impl Technique for Pvssm {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
         let (gpu, settings) = (recorder.gpu, &self.settings);
         let analysis = Analysis::ensure(&mut self.analysis, gpu, frame, settings)?;
-        let rests = frame.casters_rest && self.drawn.as_ref().is_some_and(|d| d.is(&Drawn::of(frame)));
+        let rests = frame.static_casters && self.drawn.as_ref().is_some_and(|d| d.is(&Drawn::of(frame)));
         let plan = Plan::ensure(&mut self.plan, gpu, &frame.casters, settings);
         let drawing = Drawing::ensure(&mut self.drawing, gpu, &frame.casters, settings)?;
-        let filtering = Filtering::ensure(&mut self.filtering, gpu, frame.geometry.size, settings)?;
+        let filtering = Filtering::ensure(&mut self.filtering, gpu, frame.size, settings)?;
         plan.update(gpu, settings, rests);
 
         analysis.low_resolution_map(frame, recorder)?;
@@ -183,11 +187,11 @@ impl Technique for Pvssm {
         analysis.chain(plan).chain(drawing).chain(self.filtering.iter().map(Filtering::memory)).collect()
     }
 
-    fn figures<'a>(&'a self, gpu: &'a Gpu) -> FiguresFuture<'a> {
+    fn stats<'a>(&'a self, gpu: &'a Gpu) -> StatsFuture<'a> {
         Box::pin(async move {
             match &self.plan {
                 None => Ok(Vec::new()),
-                Some(plan) => Ok(plan.read(gpu).await?.figures()),
+                Some(plan) => Ok(plan.read(gpu).await?.stats()),
             }
         })
     }

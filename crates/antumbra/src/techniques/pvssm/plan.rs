@@ -2,13 +2,16 @@
 
 use super::decide::{Grid, decide};
 use super::{PvssmSettings, PvssmUniform, analysis::Analysis};
-use crate::casters::Casters;
-use crate::frame::FrameUniform;
-use crate::recorder::{Recorder, Work};
-use crate::resource::{buffer_of, read_buffer, storage_buffer, uniform};
-use crate::shader::{HostStruct, ShaderKey};
+use crate::input::casters::Casters;
+use crate::input::frame::FrameUniform;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::{buffer_of, read_buffer, storage_buffer, uniform};
+use crate::gpu::shader::{HostStruct, ShaderKey};
 use crate::technique::{InnerContent, InnerPicture, Memory};
-use crate::{Error, Frame, Gpu, bindings, gpu_struct};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::{bindings, gpu_struct};
 use glam::{UVec2, UVec4};
 
 gpu_struct! {
@@ -58,7 +61,7 @@ pub(crate) struct Decided {
 
 impl Decided {
     /// Names and values for reports.
-    pub fn figures(&self) -> Vec<(&'static str, f64)> {
+    pub fn stats(&self) -> Vec<(&'static str, f64)> {
         let texels: u64 = self.tiles.iter().map(|t| u64::from(t.texels.x) * u64::from(t.texels.y)).sum();
         vec![
             ("tiles", self.tiles.len() as f64),
@@ -160,7 +163,7 @@ const DECISION: &str = "tile decision";
 impl Plan {
     /// Makes it in `slot` unless one for these casters is there.
     pub fn ensure<'a>(slot: &'a mut Option<Plan>, gpu: &Gpu, casters: &Casters, settings: &PvssmSettings) -> &'a Plan {
-        let batches: Vec<u32> = casters.batches.iter().map(|b| b.item_count.div_ceil(64)).collect();
+        let batches: Vec<u32> = casters.batches.iter().map(|b| b.cluster_count.div_ceil(64)).collect();
         if slot.as_ref().is_none_or(|p| p.batches != batches) {
             *slot = Some(Plan::new(gpu, batches, settings));
         }
@@ -200,7 +203,7 @@ impl Plan {
     }
 
     fn key(module: &'static str) -> ShaderKey {
-        ShaderKey::new(module).with::<FrameUniform>().with::<PvssmUniform>().with::<Tile>()
+        ShaderKey::new(module)
     }
 
     /// Notes in the grid what each kernel needs.

@@ -1,7 +1,7 @@
 //! Settings of the virtual soft shadow maps.
 
 use super::rho;
-use crate::settings::Kind;
+use crate::technique::settings::Kind;
 
 crate::choices! {
     /// How many texels a kernel needs.
@@ -30,7 +30,7 @@ crate::choices! {
 }
 
 crate::settings! {
-    /// Settings of [`Pvssm`](super::Pvssm) and [`Fvsm`](crate::techniques::fvsm::Fvsm).
+    /// Settings of [`Pvssm`](super::Pvssm) and [`Fvsm`](crate::techniques::pvssm::fvsm::Fvsm).
     pub struct PvssmSettings {
         /// Low-resolution map, texels a side.
         map: u32 = 1024, Kind::Integer { min: 16, max: 8192 };

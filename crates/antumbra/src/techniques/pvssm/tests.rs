@@ -7,7 +7,8 @@ mod seams;
 
 use crate::scene::SceneRenderer;
 use crate::testing::{Random, computed, gpu, submit};
-use crate::{Spec, Technique};
+use crate::techniques::spec::Spec;
+use crate::technique::Technique;
 use antumbra_scene::{Scene, builtin};
 use pollster::block_on;
 
@@ -28,7 +29,7 @@ fn technique(spec: &str) -> Box<dyn Technique> {
 
 /// What a technique makes of a drawn scene.
 fn shadowed(renderer: &SceneRenderer, technique: &mut dyn Technique) -> Vec<f32> {
-    let [width, height] = renderer.frame.geometry.size;
+    let [width, height] = renderer.frame.size;
     renderer.write_visibility(gpu(), &vec![-7.0; (width * height) as usize]);
     submit(|recorder| renderer.record_shadow(technique, recorder));
     block_on(renderer.read_visibility(gpu())).unwrap_or_else(|e| panic!("{e}"))
@@ -36,6 +37,6 @@ fn shadowed(renderer: &SceneRenderer, technique: &mut dyn Technique) -> Vec<f32>
 
 /// A figure of the last frame.
 fn figure(technique: &dyn Technique, name: &str) -> f64 {
-    let figures = block_on(technique.figures(gpu())).unwrap_or_else(|e| panic!("{e}"));
+    let figures = block_on(technique.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
     figures.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no figure {name}")).1
 }

@@ -3,11 +3,14 @@
 use super::patches::{Patches, SsmLevel};
 use super::settings::{Accumulate, Format};
 use super::{SsmSettings, maps::Maps};
-use crate::pipeline::RenderTarget;
-use crate::recorder::{Recorder, Work, color_target, dispatch};
-use crate::resource::Texture;
+use crate::gpu::pipeline::RenderTarget;
+use crate::gpu::recorder::{Recorder, Work, color_target, dispatch};
+use crate::gpu::texture::Texture;
 use crate::technique::{InnerPicture, Memory};
-use crate::{Error, Frame, Gpu, bindings};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::bindings;
 
 /// The soft shadow map of every level, and the finest one merged over the layers.
 pub(super) struct SoftMap {

@@ -2,7 +2,7 @@
 
 use super::SsmSettings;
 use super::settings::Format;
-use crate::Frame;
+use crate::input::frame::Frame;
 
 /// The largest inverse distance of an occluder, in 1/metres, whose patches float16 does not lose, over a receiver at
 /// `receiver_q`: 1/zO < 1/zR + 64 tan a / (N L) [Atty 2006, equation 4]. `tan_half` is the tangent of the map's half

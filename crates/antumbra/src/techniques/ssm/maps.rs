@@ -1,11 +1,14 @@
 //! What the light's centre sees: the receivers, and the nearest and the farthest surfaces of the occluders.
 
-use crate::passes::culling::Surfaces;
-use crate::passes::depth_map::{DepthMap, Drawing, Farthest};
-use crate::recorder::Recorder;
-use crate::resource::storage_buffer;
+use crate::passes::triangles::culling::Surfaces;
+use crate::passes::maps::depth_map::{DepthMap, Drawing, Farthest};
+use crate::gpu::recorder::Recorder;
+use crate::gpu::resources::storage_buffer;
 use crate::technique::{InnerPicture, Memory};
-use crate::{Casters, Error, Frame, Gpu};
+use crate::input::casters::Casters;
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
 
 /// Labels of the two drawings.
 const RECEIVERS: &str = "receiver map";

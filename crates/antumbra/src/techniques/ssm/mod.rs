@@ -5,13 +5,18 @@ mod accumulate;
 mod caution;
 mod maps;
 pub(crate) mod patches;
+#[cfg(test)]
+mod penumbra;
 mod settings;
 
-use crate::pipeline::ComputePipeline;
-use crate::recorder::{Recorder, Work};
-use crate::resource::Texture;
-use crate::technique::{About, Describe, FiguresFuture, InnerPicture, Memory, Technique};
-use crate::{Error, Frame, Gpu, bindings};
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::texture::Texture;
+use crate::technique::{TechniqueAbout, TechniqueFactory, StatsFuture, InnerPicture, Memory, Technique};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::bindings;
 use accumulate::SoftMap;
 use maps::Maps;
 use patches::Patches;
@@ -31,9 +36,9 @@ pub struct Ssm {
     said: Vec<String>,
 }
 
-impl Describe for Ssm {
+impl TechniqueFactory for Ssm {
     type Settings = SsmSettings;
-    const ABOUT: About = About {
+    const ABOUT: TechniqueAbout = TechniqueAbout {
         name: "ssm",
         title: "Soft shadow maps",
         source: "Atty 2006",
@@ -107,7 +112,7 @@ impl Technique for Ssm {
 
         let mut set = self.patches.bindings(frame, &maps.receivers);
         set.extend_from_slice(bindings! { soft: &self.soft.merged });
-        let [width, height] = frame.geometry.size;
+        let [width, height] = frame.size;
         recorder.compute("projection", &self.project, &frame.bindings(&set), Work::Threads([width, height, 1]));
         Ok(())
     }
@@ -122,7 +127,7 @@ impl Technique for Ssm {
         maps.chain(self.patches.memory()).chain(self.soft.memory()).collect()
     }
 
-    fn figures<'a>(&'a self, gpu: &'a Gpu) -> FiguresFuture<'a> {
-        Box::pin(self.patches.figures(gpu))
+    fn stats<'a>(&'a self, gpu: &'a Gpu) -> StatsFuture<'a> {
+        Box::pin(self.patches.stats(gpu))
     }
 }

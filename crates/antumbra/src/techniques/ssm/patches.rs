@@ -2,15 +2,18 @@
 
 use super::SsmSettings;
 use super::maps::Maps;
-use crate::frame::FrameUniform;
-use crate::passes::depth_map::DepthMap;
-use crate::passes::depth_pyramid::DepthPyramid;
-use crate::pipeline::Binding;
-use crate::recorder::{Recorder, Work, dispatch};
-use crate::resource::{Texture, UniformArray, read_buffer, storage_buffer, uniform};
-use crate::shader::{HostStruct, ShaderKey};
+use crate::input::frame::FrameUniform;
+use crate::passes::maps::depth_map::DepthMap;
+use crate::passes::maps::depth_pyramid::DepthPyramid;
+use crate::gpu::bindings::Binding;
+use crate::gpu::recorder::{Recorder, Work, dispatch};
+use crate::gpu::resources::{Texture, UniformArray, read_buffer, storage_buffer, uniform};
+use crate::gpu::shader::{HostStruct, ShaderKey};
 use crate::technique::{InnerPicture, Memory};
-use crate::{Error, Frame, Gpu, bindings, gpu_struct};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::{bindings, gpu_struct};
 
 gpu_struct! {
     /// What is the same for all levels.
@@ -95,7 +98,7 @@ impl Patches {
 
     /// A key of a module that reads patches.
     pub fn key(module: &'static str) -> ShaderKey {
-        ShaderKey::new(module).with::<FrameUniform>().with::<SsmUniform>().with::<SsmLevel>()
+        ShaderKey::new(module)
     }
 
     /// Texels a side of a level.
@@ -159,7 +162,7 @@ impl Patches {
     }
 
     /// Patches of the last frame, those that float16 loses, and the widest penumbra in texels of its level.
-    pub async fn figures(&self, gpu: &Gpu) -> Result<Vec<(&'static str, f64)>, Error> {
+    pub async fn stats(&self, gpu: &Gpu) -> Result<Vec<(&'static str, f64)>, Error> {
         let bytes = read_buffer(gpu, &self.totals).await?;
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
         let (patches, lost, widest) = (words[32], words[33], f32::from_bits(words[34]));

@@ -1,6 +1,6 @@
 //! What can be set.
 
-use crate::settings::Kind;
+use crate::technique::settings::Kind;
 
 crate::choices! {
     /// Who adds up the shadows of the micro-patches.

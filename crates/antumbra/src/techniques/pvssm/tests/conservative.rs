@@ -1,7 +1,7 @@
 //! The low-resolution map against an exact test of every triangle with every texel, in double precision.
 
 use super::{Random, drawn, gpu, scene, submit};
-use crate::passes::depth_map::DepthMap;
+use crate::passes::maps::depth_map::DepthMap;
 use antumbra_scene::Scene;
 use glam::{DVec2, DVec3, Vec3};
 use pollster::block_on;

@@ -162,13 +162,13 @@ fn waiting_for_the_grid_gives_the_same_picture() {
 }
 
 #[test]
-fn tiles_are_kept_while_light_and_casters_rest_and_drawn_anew_when_they_do_not() {
+fn tiles_are_kept_while_light_and_static_casters_and_drawn_anew_when_they_do_not() {
     let mut renderer = drawn(&scene("fence:slats=12"), [96, 96]);
     let mut one = technique("pvssm:map=256,tile=1024");
     let first = shadowed(&renderer, &mut *one);
     assert_eq!(figure(&*one, "tiles kept"), 0.0);
     let tiles = figure(&*one, "tiles");
-    renderer.frame.casters_rest = true;
+    renderer.frame.static_casters = true;
     let second = shadowed(&renderer, &mut *one);
     assert_eq!(figure(&*one, "tiles kept"), tiles, "all of {tiles} tiles");
     assert!(second == first, "kept tiles show something else");
@@ -182,7 +182,7 @@ fn tiles_are_kept_while_light_and_casters_rest_and_drawn_anew_when_they_do_not()
     assert!(moved == shadowed(&renderer, &mut *technique("pvssm:map=256,tile=1024")), "an old tile is used");
     assert!(moved != first, "the light has moved");
     // And a caster may have: the host says so.
-    renderer.frame.casters_rest = false;
+    renderer.frame.static_casters = false;
     shadowed(&renderer, &mut *one);
     assert_eq!(figure(&*one, "tiles kept"), 0.0);
 }

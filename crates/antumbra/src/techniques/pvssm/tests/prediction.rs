@@ -6,16 +6,16 @@ use super::super::rho::{self, DYNAMIC, STATIC};
 use super::super::{PvssmSettings, PvssmUniform, Rho};
 use super::{Random, computed, gpu};
 use crate::bindings;
-use crate::frame::FrameUniform;
-use crate::resource::uniform;
-use crate::shader::{HostStruct, ShaderKey};
+use crate::input::frame::FrameUniform;
+use crate::gpu::resources::uniform;
+use crate::gpu::shader::{HostStruct, ShaderKey};
 use glam::{DMat2, DVec2};
 
 const KERNEL: &str = "
     import package::shaders::smooth_kernel::{spread, kernel_of};
     import package::techniques::pvssm::rho::{rho, size_in_pixels};
-    @group(0) @binding(30) var<storage, read> input: array<vec4<f32>>;
-    @group(0) @binding(31) var<storage, read_write> output: array<vec4<f32>>;
+    var<storage, read> input: array<vec4<f32>>;
+    var<storage, read_write> output: array<vec4<f32>>;
     @compute @workgroup_size(64) fn each(@builtin(global_invocation_id) id: vec3<u32>) {
         if id.x < arrayLength(&output) {
             let u = 0.5 * input[2u * id.x].xy;

@@ -1,0 +1,219 @@
+//! The frustum of a shadow map from the light's centre, as narrow as what can cast on what is seen.
+//!
+//! All is measured in the map's own coordinates, tangents xy / z and inverse distance 1 / z, in which planes are affine.
+
+use crate::input::frame::View;
+use crate::input::light_grid::{Cells, clipped, each_triangle, each_world_triangle, plane_of};
+use crate::input::map_view::MapView;
+use antumbra_scene::{Aabb, RectLight, Scene, slices::at_once};
+use glam::{Vec2, Vec3};
+
+/// A symmetric frustum from the light's centre along its normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShadowFrustum {
+    /// Half the opening along the light's edges, as tangents.
+    pub tan_half: Vec2,
+    /// Casters nearer to the light's plane than this are not seen, metres.
+    pub near: f32,
+    /// Distance from the light's plane of the nearest and of the farthest surface that takes shadows, metres. Maps from
+    /// other points of the light are made as much wider as these are apart; a receiver outside of its map counts as lit.
+    pub receivers: [f32; 2],
+    /// Distance from the light's plane of the nearest surface that casts, metres; surfaces that are nearer count as there
+    /// for techniques that store depth as a part of a range.
+    pub nearest_caster: f32,
+}
+
+/// Half the widest frustum that is fitted, as a tangent: 160 degrees.
+const MAX_TAN: f32 = 5.67;
+
+/// How much longer than wide a texel may be: techniques read square windows of texels, so that what the longer side lacks
+/// is lost on the shorter one too.
+const MAX_ELONGATION: f32 = 4.0;
+
+/// Casters and receivers nearer to the light than this part of the farthest distance do not widen a frustum.
+const NEAREST: f32 = 0.02;
+
+/// A caster must be nearer to the light than the deepest surface behind it by this part of its distance.
+const SEPARATION: f32 = 2e-3;
+
+impl ShadowFrustum {
+    /// A square frustum of an opening in degrees.
+    pub fn of_degrees(fov_deg: f32, near: f32, receivers: [f32; 2]) -> ShadowFrustum {
+        let tan_half = Vec2::splat((0.5 * fov_deg).to_radians().tan());
+        ShadowFrustum { tan_half, near, receivers, nearest_caster: receivers[0] }
+    }
+
+    /// The smallest frustum around a box, for hosts that know nothing closer. The light's own setting counts if it has
+    /// one.
+    pub fn around(light: &RectLight, bounds: &Aabb) -> ShadowFrustum {
+        let corners = bounds.corners().map(|c| light.light_from_world(c));
+        let far = corners.iter().fold(0.0f32, |m, c| m.max(c.z));
+        let nearest = far * NEAREST;
+        let low = corners.iter().fold(far, |m, c| m.min(c.z)).max(nearest);
+        let receivers = [low.max(1e-6), far.max(1e-6)];
+        if let Some(degrees) = light.shadow_fov_deg {
+            return ShadowFrustum::of_degrees(degrees, near_of(far), receivers);
+        }
+        let tan = corners.iter().fold(Vec2::splat(1e-3), |m, c| m.max(c.truncate().abs() / c.z.max(nearest)));
+        ShadowFrustum {
+            tan_half: tan.min(Vec2::splat(MAX_TAN)) * 1.01,
+            near: near_of(far),
+            receivers,
+            nearest_caster: receivers[0],
+        }
+    }
+
+    /// The frustum that holds what casts shadows on what a view sees, and these shadows. Surfaces with nothing behind
+    /// them (the ground, as a rule) cast on nothing, so they do not widen it. Reads every triangle: a few hundred
+    /// milliseconds for millions of them, once for a scene whose light and view rest.
+    pub fn fit(scene: &Scene, view: &View) -> ShadowFrustum {
+        at_once(ShadowFrustum::fit_with_pauses(scene, view, &mut async || ()))
+    }
+
+    /// The same for programs that must do other things in between: after every few milliseconds it waits for `pause`.
+    pub async fn fit_with_pauses(scene: &Scene, view: &View, pause: &mut impl AsyncFnMut()) -> ShadowFrustum {
+        let around = ShadowFrustum::around(&scene.light, &scene.bounds());
+        if scene.light.shadow_fov_deg.is_some() {
+            return around;
+        }
+        let seen = seen_range(scene, view, pause).await;
+        if seen.is_empty() {
+            return around;
+        }
+        let half_light = scene.light.size * 0.5;
+        let deepest = DeepestSurface::of(scene, &seen, pause).await;
+        let mut casting = Vec2::ZERO;
+        let cast = |corners: [Vec3; 3], instance: usize| {
+            if !scene.instances[instance].receiver_only {
+                casting = casting.max(deepest.reach_of_caster(corners, half_light));
+            }
+        };
+        each_triangle(scene, cast, pause).await;
+        // Receivers beyond the reach of casters are lit, casters beyond that of receivers are of no use.
+        let tan = casting.min(seen.reach(half_light, deepest.nearest_q));
+        if tan.max_element() <= 0.0 {
+            return around;
+        }
+        let tan = tan.max(Vec2::splat(tan.max_element() / MAX_ELONGATION));
+        // What is nearer to the light than every caster takes no shadow.
+        let near_q = seen.near_q.min(deepest.nearest_q).max(seen.far_q);
+        let [low, high] = around.receivers;
+        ShadowFrustum {
+            tan_half: (tan * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN)),
+            near: around.near,
+            receivers: [(1.0 / near_q).clamp(low, high), (1.0 / seen.far_q).clamp(low, high)],
+            nearest_caster: (1.0 / deepest.nearest_q).clamp(low, high),
+        }
+    }
+}
+
+/// A near plane that cuts nothing off: inverse distances are stored as floating-point numbers, so it may be close.
+fn near_of(far: f32) -> f32 {
+    (far * 1e-4).max(1e-6)
+}
+
+/// The part of the map that visible surfaces take.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    low: Vec2,
+    high: Vec2,
+    /// Inverse distance of the farthest, and of the nearest.
+    far_q: f32,
+    near_q: f32,
+}
+
+impl Seen {
+    fn is_empty(&self) -> bool {
+        self.low.x > self.high.x
+    }
+
+    /// Half the frustum that holds all that can hide any of the light from them, casters being as near as `nearest_q`.
+    fn reach(&self, half_light: Vec2, nearest_q: f32) -> Vec2 {
+        self.low.abs().max(self.high.abs()) + half_light * (nearest_q - self.far_q).max(0.0)
+    }
+}
+
+/// Where the surfaces within the view's frustum lie in the map.
+async fn seen_range(scene: &Scene, view: &View, pause: &mut impl AsyncFnMut()) -> Seen {
+    let planes = MapView::new(view.clip_from_world()).planes_ws;
+    let mut seen = Seen { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY, far_q: f32::INFINITY, near_q: 0.0 };
+    let widen = |corners: [Vec3; 3], _| {
+        for p in clipped(&corners, &planes) {
+            let l = scene.light.light_from_world(p);
+            if l.z > 0.0 {
+                let t = (l.truncate() / l.z).clamp(Vec2::splat(-MAX_TAN), Vec2::splat(MAX_TAN));
+                seen.low = seen.low.min(t);
+                seen.high = seen.high.max(t);
+                seen.far_q = seen.far_q.min(1.0 / l.z);
+                seen.near_q = seen.near_q.max(1.0 / l.z);
+            }
+        }
+    };
+    each_world_triangle(scene, widen, pause).await;
+    seen
+}
+
+/// The surface that is farthest from the light, for each cell of the map: what is nearer casts on it.
+struct DeepestSurface {
+    cells: Cells,
+    /// Inverse distance as an affine function of the tangent: (x, y, constant); infinite where there is nothing.
+    planes: Vec<Vec3>,
+    /// Of the nearest surface of all.
+    nearest_q: f32,
+}
+
+impl DeepestSurface {
+    async fn of(scene: &Scene, seen: &Seen, pause: &mut impl AsyncFnMut()) -> DeepestSurface {
+        // Shadows reach visible surfaces from casters that project a little beside them.
+        let cells = Cells::over(seen.low, seen.high);
+        let nothing = Vec3::new(0.0, 0.0, f32::INFINITY);
+        let mut grid = DeepestSurface { cells, planes: vec![nothing; Cells::COUNT], nearest_q: 0.0 };
+        let add = |corners: [Vec3; 3], instance: usize| grid.add(corners, scene.instances[instance].receiver_only);
+        each_triangle(scene, add, pause).await;
+        grid
+    }
+
+    fn add(&mut self, corners: [Vec3; 3], receiver_only: bool) {
+        let Some(plane) = plane_of(&corners) else { return };
+        let polygon = clipped(&corners, &self.cells.rim());
+        if !receiver_only {
+            self.nearest_q = polygon.iter().fold(self.nearest_q, |q, c| q.max(1.0 / c.z));
+        }
+        let mut planes = std::mem::take(&mut self.planes);
+        self.cells.for_each(&polygon, |cell, t| {
+            if plane.dot(t.extend(1.0)) < planes[cell].dot(t.extend(1.0)) {
+                planes[cell] = plane;
+            }
+        });
+        self.planes = planes;
+    }
+
+    /// Half the frustum that holds a caster and the shadow that it casts on the deepest surface; 0 if it casts on
+    /// nothing that the grid covers.
+    fn reach_of_caster(&self, corners: [Vec3; 3], half_light: Vec2) -> Vec2 {
+        let mut reach = Vec2::ZERO;
+        let mut cast = |t: Vec2, q: f32, behind: f32| {
+            if behind.is_finite() && q > behind * (1.0 + SEPARATION) {
+                reach = reach.max(t.abs() + half_light * (q - behind));
+            }
+        };
+        let polygon = clipped(&corners, &self.cells.rim());
+        for c in &polygon {
+            let t = c.truncate() / c.z;
+            cast(t, 1.0 / c.z, self.deepest_q(t));
+        }
+        // A large triangle may cast with its middle where its corners hang over nothing.
+        if let Some(plane) = plane_of(&corners) {
+            self.cells
+                .for_each(&polygon, |cell, t| cast(t, plane.dot(t.extend(1.0)), self.planes[cell].dot(t.extend(1.0))));
+        }
+        reach
+    }
+
+    /// Inverse distance of the deepest surface at a tangent, the smallest of the cells around it: what hangs over an
+    /// edge casts on what lies beside it.
+    fn deepest_q(&self, t: Vec2) -> f32 {
+        let of_cell = |cell: usize| self.planes[cell].dot(t.extend(1.0));
+        self.cells.around(t, 1).map(of_cell).filter(|q| *q > 0.0).fold(f32::INFINITY, f32::min)
+    }
+}

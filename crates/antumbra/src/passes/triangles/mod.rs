@@ -1,0 +1,7 @@
+//! Passes over the casters' triangles: culling, shared edges, silhouettes, light-space triangles and their texels.
+
+// TODO(convert) pub mod adjacency;
+pub mod culling;
+// TODO(convert) pub mod light_triangles;
+// TODO(convert) pub mod silhouette;
+// TODO(convert) pub mod triangle_pairs;

@@ -1,0 +1,69 @@
+//! A technique with its resources: what a renderer keeps for a light.
+
+use crate::error::Error;
+use crate::gpu::debug_view::DebugView;
+use crate::gpu::device::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::resources::{Memory, Resources};
+use crate::gpu::timer::Timer;
+use crate::input::frame::Frame;
+use crate::technique::{StatsFuture, Technique};
+
+/// The shadows of one light by one technique. Textures and buffers are made by the first frame and kept.
+pub struct Shadows {
+    technique: Box<dyn Technique>,
+    resources: Resources,
+}
+
+impl Shadows {
+    /// Shadows by this technique.
+    pub fn new(technique: impl Technique + 'static) -> Shadows {
+        Shadows::of_boxed(Box::new(technique))
+    }
+
+    pub(crate) fn of_boxed(technique: Box<dyn Technique>) -> Shadows {
+        Shadows { technique, resources: Resources::default() }
+    }
+
+    /// Records all passes that fill the frame's visibility. Nothing waits, and a frame like the last one makes no
+    /// resource and no bind group.
+    pub fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, frame: &Frame) -> Result<(), Error> {
+        self.record_timed(gpu, encoder, frame, None)
+    }
+
+    /// The same with a GPU time for each pass; see [`Timer::finish`].
+    pub fn record_timed(
+        &mut self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        frame: &Frame,
+        timer: Option<&Timer>,
+    ) -> Result<(), Error> {
+        self.technique.record(frame, &mut Recorder::new(gpu, encoder, &mut self.resources).timed(timer))
+    }
+
+    /// GPU memory by the label of the pass that uses it.
+    pub fn memory(&self) -> Vec<Memory> {
+        self.resources.memory()
+    }
+
+    /// The textures and lists of the last frame, for viewers.
+    pub fn debug_views(&self) -> Vec<DebugView> {
+        self.resources.debug_views()
+    }
+
+    /// Keeps resources that only debug views show, which cost time and memory, from the next frame on or no longer.
+    pub fn set_debug_capture(&mut self, on: bool) {
+        self.resources.set_debug_capture(on);
+    }
+
+    /// Number of textures, buffers and bind groups that were made so far.
+    pub fn resources_made(&self) -> u64 {
+        self.resources.made()
+    }
+
+    /// Counts of the last frame, such as the number of maps. Waits for the GPU: for tests and reports.
+    pub fn stats<'a>(&'a self, gpu: &'a Gpu) -> StatsFuture<'a> {
+        self.technique.stats(gpu)
+    }
+}

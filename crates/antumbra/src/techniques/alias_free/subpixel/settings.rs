@@ -1,0 +1,49 @@
+//! Settings of `subpixel`.
+
+use super::pattern::{Arrangement, MOST_SAMPLES, Pattern};
+use crate::error::Error;
+use crate::technique::settings::Kind;
+
+crate::choices! {
+    /// How the samples of a pixel are weighed.
+    pub enum Filter {
+        /// All the same.
+        Box = "box",
+        /// By a Gaussian about the pixel's middle, over the neighbours too.
+        Gaussian = "gaussian",
+    }
+}
+
+crate::settings! {
+    /// Settings of [`Subpixel`](super::Subpixel).
+    pub struct SubpixelSettings {
+        /// Shadow map and silhouette mask map, texels a side; they group the work and decide what no silhouette passes.
+        map: u32 = 512, Kind::Integer { min: 16, max: 4096 };
+        /// Samples a pixel; 8, 16, 32, 64 and 128 use all bits of their masks.
+        samples: u32 = 32, Kind::Integer { min: 1, max: MOST_SAMPLES as u32 };
+        /// Where they lie; one is always in the pixel's middle.
+        pattern: Arrangement = Arrangement::Rotated, Kind::Choice { options: Arrangement::OPTIONS };
+        /// A pattern of one's own in the place of `samples` and `pattern`: parts of a pixel, one of them 0.5 0.5.
+        points: Vec<[f32; 2]> = Vec::new(), Kind::Points { max: MOST_SAMPLES as u32 };
+        /// How the samples are weighed.
+        filter: Filter = Filter::Box, Kind::Choice { options: Filter::OPTIONS };
+        /// Leaves out samples at which another triangle stands before the pixel's facet.
+        validity: bool = true, Kind::Toggle;
+        /// Leaves out silhouettes that lie behind what the shadow map holds all around them.
+        hide: bool = true, Kind::Toggle;
+        /// Memory for lists, MiB; a picture that needs more is made strip by strip.
+        budget: u32 = 256, Kind::Integer { min: 1, max: 4096 };
+        /// Counts silhouettes, pixels and tests for reports; takes time.
+        statistics: bool = false, Kind::Toggle;
+    }
+}
+
+impl SubpixelSettings {
+    /// The samples of a pixel.
+    pub fn pattern(&self) -> Result<Pattern, Error> {
+        match &self.points[..] {
+            [] => Ok(Pattern::arranged(self.pattern, self.samples)),
+            points => Pattern::of_points(points),
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! The skeleton of techniques whose shadow map can be filtered like a picture: what is stored of a texel's depths is
+//! blurred, given a mip chain, and looked up once a pixel with trilinear and anisotropic filtering. A technique says what
+//! is stored and how the filtered values are read, in a module `warp.wesl` of two functions.
+
+use crate::input::frame::FrameUniform;
+use crate::passes::maps::moments::{DepthWarp, MomentMap, MomentShape, Nearest, TexelFormat};
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::uniform;
+use crate::technique::settings::Settings;
+use crate::gpu::shader::ShaderKey;
+use crate::technique::{TechniqueAbout, TechniqueFactory, InnerPicture, Memory, Technique};
+use crate::error::Error;
+use crate::input::frame::Frame;
+use crate::gpu::device::Gpu;
+use crate::{bindings, gpu_struct};
+use glam::Vec2;
+use std::{marker::PhantomData, sync::Arc};
+
+/// What distinguishes one prefiltered technique from another.
+pub trait Prefilter: 'static {
+    /// Its settings, declared by [`prefilter_settings!`](crate::prefilter_settings!).
+    type Settings: Settings + HasFiltering;
+    /// What it says of itself.
+    const ABOUT: TechniqueAbout;
+    /// Path of its `warp.wesl` below `src`.
+    const WARP: &'static str;
+
+    /// What is stored for these settings.
+    fn stored(settings: &Self::Settings) -> Stored;
+}
+
+/// What a technique stores of each texel.
+#[derive(Clone, Copy, Debug)]
+pub struct Stored {
+    /// A texel of a layer.
+    pub format: TexelFormat,
+    /// A format of the technique that every adapter stores.
+    pub portable: &'static str,
+    /// Layers of four channels.
+    pub layers: u32,
+    /// The numbers that the warp takes, without the range of depths.
+    pub warp: DepthWarp,
+}
+
+crate::choices! {
+    /// Who interpolates.
+    pub enum Lookup {
+        /// The sampler where the adapter filters as it is asked to, and the shader elsewhere.
+        Hardware = "hardware",
+        /// The shader.
+        Shader = "shader",
+    }
+}
+
+/// The settings that every prefiltered technique has.
+#[derive(Clone, Copy, Debug)]
+pub struct Filtering {
+    /// Texels a side.
+    pub map: u32,
+    /// Four depths a texel.
+    pub multisample: bool,
+    /// Width of the Gaussian, texels.
+    pub blur: u32,
+    /// A mip chain.
+    pub mips: bool,
+    /// Greatest ratio of a footprint's axes.
+    pub anisotropy: u32,
+    /// Who interpolates.
+    pub lookup: Lookup,
+}
+
+/// Settings with those of filtering among them.
+pub trait HasFiltering {
+    /// These.
+    fn filtering(&self) -> Filtering;
+}
+
+/// Declares the settings of a prefiltered technique: those of filtering, then its own, as in
+/// [`settings!`](crate::technique::settings!).
+#[macro_export]
+macro_rules! prefilter_settings {
+    ($(#[$meta:meta])* $vis:vis struct $name:ident { $($own:tt)* }) => {
+        $crate::settings! {
+            $(#[$meta])*
+            $vis struct $name {
+                /// Shadow map, texels a side.
+                map: u32 = 2048, $crate::technique::settings::Kind::Integer { min: 16, max: 16384 };
+                /// Draw four depths a texel and average what is stored of them.
+                multisample: bool = false, $crate::technique::settings::Kind::Toggle;
+                /// Width of a Gaussian blur of the map in texels, an even one counting as the next odd one; 1 is none.
+                blur: u32 = 3, $crate::technique::settings::Kind::Integer { min: 1, max: 63 };
+                /// Mip chain, for pixels that cover many texels.
+                mips: bool = true, $crate::technique::settings::Kind::Toggle;
+                /// Greatest anisotropy of the filter; 1 is none, and so is any without a mip chain.
+                anisotropy: u32 = 16, $crate::technique::settings::Kind::Integer { min: 1, max: 16 };
+                /// Filtered by the sampler (by the shader where the adapter cannot as it is asked to), or by the shader.
+                lookup: $crate::techniques::moments::prefiltered::Lookup = $crate::techniques::moments::prefiltered::Lookup::Hardware,
+                    $crate::technique::settings::Kind::Choice { options: $crate::techniques::moments::prefiltered::Lookup::OPTIONS };
+                $($own)*
+            }
+        }
+
+        impl $crate::techniques::moments::prefiltered::HasFiltering for $name {
+            fn filtering(&self) -> $crate::techniques::moments::prefiltered::Filtering {
+                $crate::techniques::moments::prefiltered::Filtering {
+                    map: self.map,
+                    multisample: self.multisample,
+                    blur: self.blur,
+                    mips: self.mips,
+                    anisotropy: self.anisotropy,
+                    lookup: self.lookup,
+                }
+            }
+        }
+    };
+}
+
+gpu_struct! {
+    /// How a moment map is filtered; see `shaders/moment_map.wesl`.
+    pub(crate) struct FilterUniform {
+        /// Texels a side.
+        size: Vec2,
+        /// Greatest ratio of a footprint's axes.
+        anisotropy: f32,
+        /// Coarsest level of the mip chain.
+        last_level: f32,
+        /// Layers of the map.
+        layers: u32,
+    }
+}
+
+/// A technique that looks a prefiltered map up once a pixel.
+pub struct Prefiltered<P: Prefilter> {
+    stored: Stored,
+    shape: MomentShape,
+    lookup: Arc<ComputePipeline>,
+    filtering: wgpu::Buffer,
+    trilinear: wgpu::Sampler,
+    map: Option<MomentMap>,
+    technique: PhantomData<fn() -> P>,
+}
+
+impl<P: Prefilter> TechniqueFactory for Prefiltered<P> {
+    type Settings = P::Settings;
+    const ABOUT: TechniqueAbout = P::ABOUT;
+
+    fn make(gpu: &Gpu, settings: P::Settings) -> Result<Self, Error> {
+        let (filtering, stored) = (settings.filtering(), P::stored(&settings));
+        stored.format.check(gpu, stored.portable)?;
+        // Without a mip chain there is nothing that several lookups could be spared by.
+        let anisotropy = if filtering.mips { filtering.anisotropy } else { 1 };
+        let filtered = stored.format.is_filtered(gpu) && (anisotropy == 1 || gpu.capabilities.anisotropic_filtering);
+        let hardware = filtering.lookup == Lookup::Hardware && filtered;
+        let key = ShaderKey::new("techniques::moments::prefiltered::lookup")
+            .part("warp", P::WARP)
+            .feature("hardware", hardware)
+            .feature("split", stored.format.is_split());
+        let shape = MomentShape {
+            size: filtering.map,
+            layers: stored.layers,
+            format: stored.format,
+            samples: if filtering.multisample { 4 } else { 1 },
+            blur: filtering.blur | 1,
+            mips: filtering.mips,
+        };
+        let last_level = if filtering.mips { filtering.map.ilog2() as f32 } else { 0.0 };
+        let value = FilterUniform {
+            size: Vec2::splat(filtering.map as f32),
+            anisotropy: anisotropy as f32,
+            last_level,
+            layers: stored.layers,
+        };
+        Ok(Prefiltered {
+            lookup: gpu.compute_pipeline(&key, "lookup")?,
+            filtering: uniform(gpu, "moment filter", &value),
+            trilinear: sampler(gpu, anisotropy as u16, last_level),
+            stored,
+            shape,
+            map: None,
+            technique: PhantomData,
+        })
+    }
+}
+
+fn sampler(gpu: &Gpu, anisotropy: u16, last_level: f32) -> wgpu::Sampler {
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("moment filter"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        mipmap_filter: wgpu::MipmapFilterMode::Linear,
+        lod_max_clamp: last_level,
+        anisotropy_clamp: anisotropy,
+        ..Default::default()
+    })
+}
+
+impl<P: Prefilter> Technique for Prefiltered<P> {
+    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+        let map = MomentMap::ensure(&mut self.map, recorder.gpu, self.shape, &frame.casters)?;
+        map.record(recorder, frame, P::WARP, self.stored.warp.over(frame, Nearest::Receiver))?;
+        let set = frame.bindings(bindings! {
+            warp: &map.warp,
+            moments: &map.texture,
+            filtering: &self.filtering,
+            trilinear: &self.trilinear,
+        });
+        let [width, height] = frame.size;
+        recorder.compute("filtered lookup", &self.lookup, &set, Work::Threads([width, height, 1]));
+        Ok(())
+    }
+
+    fn inner_pictures(&self) -> Vec<InnerPicture> {
+        self.map.iter().flat_map(MomentMap::inner_pictures).collect()
+    }
+
+    fn memory(&self) -> Vec<Memory> {
+        self.map.iter().flat_map(MomentMap::memory).collect()
+    }
+}
