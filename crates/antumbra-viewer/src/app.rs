@@ -130,7 +130,7 @@ impl App {
             picture: session.canvas.as_ref().map(|c| c.size),
             inner: [0, 1].map(|i| {
                 let made = halves[i].made.iter();
-                made.flat_map(|m| m.1.inner_pictures()).map(|p| p.name).collect()
+                made.flat_map(|m| m.1.debug_views()).map(|p| p.name).collect()
             }),
             camera: (desk.camera.eye.to_array(), desk.camera.target.to_array()),
             light: (desk.light.center.to_array(), desk.light.size.to_array()),

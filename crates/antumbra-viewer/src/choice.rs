@@ -1,6 +1,6 @@
 //! A technique with its settings as a person changes them one by one, and as a SPEC.
 
-use antumbra::technique::find;
+use antumbra::techniques::spec::find;
 use antumbra::technique::settings::{Kind, Setting};
 use antumbra::{Spec, TechniqueInfo};
 use serde_json::{Map, Value};
@@ -33,7 +33,7 @@ impl Choice {
     }
 
     /// The technique of this name as it comes.
-    pub fn named(name: &str) -> Result<Choice, antumbra::technique::settings::SpecError> {
+    pub fn named(name: &str) -> Result<Choice, antumbra::error::SpecError> {
         find(name).map(Choice::new)
     }
 

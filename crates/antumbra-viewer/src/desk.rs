@@ -132,7 +132,7 @@ impl Desk {
     }
 
     /// True if the window that looks inside is open on this half.
-    pub fn looks_inside(&self, half: usize) -> bool {
+    pub fn shows_debug_views(&self, half: usize) -> bool {
         self.inside.as_ref().is_some_and(|i| i.half.min(self.techniques() - 1) == half)
     }
 

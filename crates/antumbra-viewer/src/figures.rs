@@ -4,7 +4,7 @@ use crate::job::Job;
 use crate::readback::Readback;
 use crate::truth::Truth;
 use antumbra::Gpu;
-use antumbra::gpu::resource::Texture;
+use antumbra::gpu::texture::Texture;
 use antumbra_metrics::{ErrorFigures, Image, error_figures};
 use web_time::{Duration, Instant};
 

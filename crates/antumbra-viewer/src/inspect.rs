@@ -2,8 +2,8 @@
 
 use crate::readback::Readback;
 use antumbra::Gpu;
-use antumbra::gpu::resource::Texture;
-use antumbra::technique::{InnerContent, InnerPicture};
+use antumbra::gpu::texture::{Texture, TextureDescription};
+use antumbra::gpu::debug_view::{DebugContent, DebugLayout, DebugView};
 
 /// Pixels a side of what is shown.
 const SIDE: u32 = 512;
@@ -20,30 +20,30 @@ pub struct Part {
 }
 
 /// What parts a picture has: layers, levels, channels.
-pub fn parts(content: &InnerContent) -> [u32; 3] {
+pub fn parts(content: &DebugContent) -> [u32; 3] {
     match content {
-        InnerContent::Texture(texture) => {
+        DebugContent::Texture(texture) => {
             let channels = u32::from(texture.format().components());
             [texture.depth_or_array_layers(), texture.mip_level_count(), channels]
         }
-        InnerContent::Numbers { channels, .. } => [1, 1, *channels],
+        DebugContent::Buffer(_, DebugLayout::Numbers { channels, .. }) => [1, 1, *channels],
         _ => [1; 3],
     }
 }
 
 /// Its texels or places along x and y.
-pub fn size(content: &InnerContent) -> [u32; 2] {
+pub fn size(content: &DebugContent) -> [u32; 2] {
     match content {
-        InnerContent::Texture(texture) => [texture.width(), texture.height()],
-        InnerContent::Numbers { size, .. } | InnerContent::Pixels { size, .. } => *size,
-        InnerContent::Mask { side, .. } | InnerContent::ListLengths { side, .. } => [*side; 2],
-        InnerContent::LightPoints(_) => [1; 2],
+        DebugContent::Texture(texture) => [texture.width(), texture.height()],
+        DebugContent::Buffer(_, DebugLayout::Numbers { size, .. } | DebugLayout::Pixels { size }) => *size,
+        DebugContent::Buffer(_, DebugLayout::Mask { side } | DebugLayout::ListLengths { side }) => [*side; 2],
+        DebugContent::LightPoints(_) => [1; 2],
     }
 }
 
 /// True if it can be shown: depth or float texels, one sample each.
-pub fn is_shown(picture: &InnerPicture) -> bool {
-    let InnerContent::Texture(t) = &picture.content else { return true };
+pub fn is_shown(picture: &DebugView) -> bool {
+    let DebugContent::Texture(t) = &picture.content else { return true };
     let kind = t.format().sample_type(None, None);
     let readable = matches!(kind, Some(wgpu::TextureSampleType::Float { .. } | wgpu::TextureSampleType::Depth));
     readable && t.sample_count() == 1 && t.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING)
@@ -85,14 +85,14 @@ impl Inspector {
                 cache: None,
             })
         };
-        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
+        let shown = TextureDescription::new([SIDE; 2], wgpu::TextureFormat::Rgba8Unorm, "sRGB colour");
         let layout = values_layout(gpu);
         let buffer = |label, size, usage| {
             let mapped_at_creation = false;
             gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some(label), size, usage, mapped_at_creation })
         };
         Inspector {
-            shown: Texture::new(gpu, "inner picture", [SIDE; 2], 1, wgpu::TextureFormat::Rgba8Unorm, usage),
+            shown: Texture::new(gpu, "debug view", shown),
             range: None,
             measure: pipeline("measure", Some(&layout)),
             show_values: pipeline("show_values", Some(&layout)),
@@ -111,14 +111,16 @@ impl Inspector {
     }
 
     /// Draws a texture's part or a list.
-    pub fn draw(&mut self, gpu: &Gpu, picture: &InnerPicture, part: Part) {
+    pub fn draw(&mut self, gpu: &Gpu, picture: &DebugView, part: Part) {
         match &picture.content {
-            InnerContent::Texture(texture) => self.draw_texture(gpu, texture, part),
-            InnerContent::Pixels { list, size } => self.draw_list(gpu, list, *size),
-            InnerContent::Numbers { .. } => self.draw_numbers(gpu, &picture.content, part),
-            InnerContent::Mask { bits, side } => self.draw_most(gpu, bits, *side, false),
-            InnerContent::ListLengths { ends, side } => self.draw_most(gpu, ends, *side, true),
-            InnerContent::LightPoints(_) => self.range = None,
+            DebugContent::Texture(texture) => self.draw_texture(gpu, texture, part),
+            DebugContent::Buffer(buffer, layout) => match layout {
+                DebugLayout::Pixels { size } => self.draw_list(gpu, buffer, *size),
+                DebugLayout::Numbers { .. } => self.draw_numbers(gpu, buffer, layout, part),
+                DebugLayout::Mask { side } => self.draw_most(gpu, buffer, *side, false),
+                DebugLayout::ListLengths { side } => self.draw_most(gpu, buffer, *side, true),
+            },
+            DebugContent::LightPoints(_) => self.range = None,
         }
     }
 
@@ -130,8 +132,8 @@ impl Inspector {
         }
     }
 
-    fn draw_numbers(&mut self, gpu: &Gpu, content: &InnerContent, part: Part) {
-        let InnerContent::Numbers { numbers, stride, size, list, .. } = content else { return };
+    fn draw_numbers(&mut self, gpu: &Gpu, numbers: &wgpu::Buffer, layout: &DebugLayout, part: Part) {
+        let DebugLayout::Numbers { stride, size, list, .. } = layout else { return };
         let (texture, view) = gathered(&mut self.gathered, gpu, *size);
         let look = [part.layer, part.level, part.channel, size[0], size[1], *stride];
         gpu.queue.write_buffer(&self.look, 0, bytemuck::cast_slice(&look));
@@ -185,7 +187,7 @@ impl Inspector {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         for ((pipeline, [x, y]), entries) in steps.iter().zip(groups) {
             let layout = &pipeline.get_bind_group_layout(0);
-            let group = wgpu::BindGroupDescriptor { label: Some("inner picture"), layout, entries };
+            let group = wgpu::BindGroupDescriptor { label: Some("debug view"), layout, entries };
             let group = gpu.device.create_bind_group(&group);
             let mut pass = encoder.begin_compute_pass(&Default::default());
             pass.set_pipeline(pipeline);
@@ -199,8 +201,8 @@ impl Inspector {
 /// Numbers of a picture of this size where they belong.
 fn gathered(slot: &mut Option<Texture>, gpu: &Gpu, size: [u32; 2]) -> (wgpu::Texture, wgpu::TextureView) {
     if slot.as_ref().is_none_or(|t| [t.texture.width(), t.texture.height()] != size) {
-        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        *slot = Some(Texture::new(gpu, "gathered numbers", size, 1, wgpu::TextureFormat::R32Float, usage));
+        let description = TextureDescription::new(size, wgpu::TextureFormat::R32Float, "numbers of a buffer");
+        *slot = Some(Texture::new(gpu, "gathered numbers", description));
     }
     let made = slot.as_ref().expect("just made");
     (made.texture.clone(), made.view.clone())
@@ -241,10 +243,10 @@ fn values_layout(gpu: &Gpu) -> wgpu::PipelineLayout {
         count: None,
     };
     let entries: Vec<_> = kinds.into_iter().zip(0u32..).map(entry).collect();
-    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("inner picture"), entries: &entries };
+    let descriptor = wgpu::BindGroupLayoutDescriptor { label: Some("debug view"), entries: &entries };
     let group = gpu.device.create_bind_group_layout(&descriptor);
     gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: Some("inner picture"),
+        label: Some("debug view"),
         bind_group_layouts: &[Some(&group)],
         immediate_size: 0,
     })

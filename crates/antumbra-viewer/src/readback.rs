@@ -1,7 +1,7 @@
 //! Values from the GPU without waiting for it.
 
 use antumbra::Gpu;
-use antumbra::gpu::resource::Texture;
+use antumbra::gpu::texture::Texture;
 use std::sync::mpsc::{Receiver, channel};
 
 /// A texture of four bytes a texel, or a buffer, on its way to the CPU.

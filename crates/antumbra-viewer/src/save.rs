@@ -17,7 +17,7 @@ impl Saving {
     pub fn start(desk: &Desk, session: &Session) -> Option<Saving> {
         let canvas = session.canvas.as_ref()?;
         let count = if desk.compare == Compare::One { 1 } else { 2 };
-        let read = |half: &crate::stage::Half| Readback::start(&session.gpu, &half.picture.texture);
+        let read = |half: &crate::stage::Half| Readback::start(&session.gpu, &half.image);
         Some(Saving {
             halves: canvas.halves[..count].iter().map(read).collect(),
             size: canvas.size,

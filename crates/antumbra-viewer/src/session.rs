@@ -10,7 +10,7 @@ use crate::show::{Show, Shown};
 use crate::stage::{Canvas, Stage};
 use crate::times::Times;
 use crate::truth::{Lazy, Question, Truth};
-use antumbra::{Error, Gpu, Recorder, Technique, Timer, View};
+use antumbra::{Error, Gpu, Shadows, Timer, View};
 use eframe::egui;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,7 +26,7 @@ const TURNING: f32 = 0.5;
 /// A technique at work on one half.
 pub struct Half {
     /// What is drawn, with its choice.
-    pub made: Option<(Choice, Box<dyn Technique>)>,
+    pub made: Option<(Choice, Shadows)>,
     /// What is being compiled.
     pub making: Option<(Choice, Making)>,
     /// Why the chosen one cannot be drawn.
@@ -37,11 +37,11 @@ pub struct Half {
     pub measured: Measured,
     timer: Timer,
     /// Whether it keeps what only people look at, and what is being compiled for that.
-    looked_at: bool,
+    captured: bool,
     preparing: Option<Job<Result<(), Error>>>,
 }
 
-type Making = Job<Result<Box<dyn Technique>, Error>>;
+type Making = Job<Result<Shadows, Error>>;
 
 /// All that depends on the device.
 pub struct Session {
@@ -88,7 +88,7 @@ struct Wanted {
     choices: [Option<Choice>; 2],
     compare: Compare,
     show: Show,
-    looked_at: [bool; 2],
+    captured: [bool; 2],
 }
 
 impl Session {
@@ -102,7 +102,7 @@ impl Session {
                 times: Times::default(),
                 measured: Measured::default(),
                 timer: Timer::new(&gpu)?,
-                looked_at: false,
+                captured: false,
                 preparing: None,
             })
         };
@@ -159,7 +159,7 @@ impl Session {
         if let Some(stage) = &self.stage {
             for (i, half) in self.halves.iter_mut().enumerate().take(desk.techniques()) {
                 half.work(&self.gpu, stage, &desk.choices[i], &self.ctx);
-                half.look_inside(desk.looks_inside(i), &self.gpu, stage, &self.ctx);
+                half.set_debug_capture(desk.shows_debug_views(i), &self.gpu, stage, &self.ctx);
             }
         }
         messages
@@ -202,10 +202,10 @@ impl Session {
             choices: [0, 1].map(|i| self.halves[i].made.as_ref().map(|m| m.0.clone())),
             compare: desk.compare,
             show: desk.show,
-            looked_at: [0, 1].map(|i| self.halves[i].looked_at),
+            captured: [0, 1].map(|i| self.halves[i].captured),
         };
         if self.last.as_ref() != Some(&wanted) {
-            let of = |l: &Wanted| Wanted { show: l.show, looked_at: l.looked_at, ..wanted.clone() };
+            let of = |l: &Wanted| Wanted { show: l.show, captured: l.captured, ..wanted.clone() };
             let only_shown = self.last.as_ref().is_some_and(|l| of(l) == *l);
             if !only_shown {
                 self.changed = Instant::now();
@@ -236,14 +236,12 @@ impl Session {
         let gpu = &self.gpu;
         let frustum = stage.frustum(view, desk.light, waker);
         canvas.update(gpu, stage, view, desk.light, frustum);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        canvas.geometry.record(&mut Recorder::new(gpu, &mut encoder), &stage.casters(), &view)?;
-        gpu.queue.submit([encoder.finish()]);
+        canvas.record_geometry(gpu, &stage.casters(), &view)?;
         let count = if desk.compare == Compare::One { 1 } else { 2 };
         for (i, picture) in canvas.halves.iter_mut().enumerate().take(count) {
             let half = &mut self.halves[i];
             let is_truth = i == 1 && desk.compare == Compare::Truth;
-            let technique = half.made.as_mut().filter(|_| !is_truth).map(|m| &mut *m.1);
+            let technique = half.made.as_mut().filter(|_| !is_truth).map(|m| &mut m.1);
             // The truth has no error: what it is stands there instead.
             let show = if is_truth && desk.show == Show::Error { Show::Visibility } else { desk.show };
             let shown = (&self.shown, show, &canvas.truth);
@@ -343,7 +341,7 @@ impl Session {
     pub fn is_idle(&self, desk: &Desk) -> bool {
         let ready = |i: usize| {
             let half = &self.halves[i];
-            half.is_settled(&desk.choices[i]) && (half.made.is_none() || half.looked_at == desk.looks_inside(i))
+            half.is_settled(&desk.choices[i]) && (half.made.is_none() || half.captured == desk.shows_debug_views(i))
         };
         let drawn = self.left_to_draw == 0 && self.stage.is_some() && self.last.is_some();
         let traced = !desk.wants_truth() || self.truth.as_ref().is_some_and(Truth::is_over);
@@ -362,7 +360,7 @@ impl Half {
             match result {
                 Ok(Ok(technique)) => {
                     (self.made, self.failed) = (Some((of, technique)), None);
-                    (self.looked_at, self.preparing) = (false, None);
+                    (self.captured, self.preparing) = (false, None);
                     self.times = Times::default();
                     // What the one before has under way are no times of this one.
                     if let Ok(timer) = Timer::new(gpu) {
@@ -388,17 +386,17 @@ impl Half {
     }
 
     /// Has the technique keep what only people look at once that is compiled, or keep it no longer.
-    fn look_inside(&mut self, wanted: bool, gpu: &Gpu, stage: &Stage, ctx: &egui::Context) {
-        let Some((choice, technique)) = self.made.as_mut().filter(|_| self.looked_at != wanted) else { return };
+    fn set_debug_capture(&mut self, wanted: bool, gpu: &Gpu, stage: &Stage, ctx: &egui::Context) {
+        let Some((choice, technique)) = self.made.as_mut().filter(|_| self.captured != wanted) else { return };
         if !wanted {
-            technique.look_inside(false);
-            (self.looked_at, self.preparing) = (false, None);
+            technique.set_debug_capture(false);
+            (self.captured, self.preparing) = (false, None);
             return;
         }
         if let Some(result) = self.preparing.as_ref().and_then(Job::poll) {
             // What the adapter has no room for is not seen; what is there anyway is.
-            technique.look_inside(matches!(result, Ok(Ok(()))));
-            (self.looked_at, self.preparing) = (true, None);
+            technique.set_debug_capture(matches!(result, Ok(Ok(()))));
+            (self.captured, self.preparing) = (true, None);
         } else if self.preparing.is_none() {
             let (gpu, spec, ctx) = (gpu.clone(), choice.spec(), ctx.clone());
             let (scene, casters) = (stage.scene.clone(), stage.casters());

@@ -1,7 +1,7 @@
 //! What is shown of a half: the shaded picture, the visibility, or its error.
 
 use antumbra::Gpu;
-use antumbra::gpu::resource::Texture;
+use antumbra::gpu::texture::{Texture, TextureDescription};
 use antumbra_metrics::{HEAT_SCALE, color_bar};
 
 /// What a picture shows.
@@ -44,8 +44,8 @@ impl Shown {
                 cache: None,
             })
         };
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let colors = Texture::new(gpu, "heat colours", [COLORS, 1], 1, wgpu::TextureFormat::Rgba8Unorm, usage);
+        let colors = TextureDescription::new([COLORS, 1], wgpu::TextureFormat::Rgba8Unorm, "heat colours");
+        let colors = Texture::new(gpu, "heat colours", colors.usage(wgpu::TextureUsages::COPY_DST));
         let bar = color_bar(COLORS, 1).data;
         let rgba: Vec<u8> = bar.chunks_exact(3).flat_map(|c| [c[0], c[1], c[2], 255]).collect();
         let rows = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(4 * COLORS), rows_per_image: None };

@@ -2,14 +2,15 @@
 
 use crate::fitter::Fitter;
 use crate::show::{Show, Shown};
-use antumbra::gpu::recorder::PassTime;
-use antumbra::gpu::resource::Texture;
+use antumbra::gpu::timer::PassTime;
+use antumbra::gpu::recorder::Recorder;
+use antumbra::gpu::resources::Resources;
+use antumbra::gpu::texture::{Texture, TextureDescription};
 use antumbra::input::casters::Role;
-use antumbra::input::frame;
 use antumbra::passes::pixels::geometry_buffer::GeometryBuffer;
-use antumbra::passes::pixels::picture::Picture;
+use antumbra::passes::pixels::shading::{image_texture, shade};
 use antumbra::scene::{Arranged, Placed};
-use antumbra::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Technique, Timer, View};
+use antumbra::{Casters, Error, Frame, FrameDescriptor, Gpu, RectLight, ShadowFrustum, Shadows, Timer, View};
 use antumbra_scene::{Aabb, Instance, Scene};
 use glam::{Affine3A, Quat, Vec3};
 use std::sync::Arc;
@@ -49,10 +50,11 @@ impl Stage {
             angle: 0.0,
         };
         let small = Canvas::new(gpu, &stage, [8, 8])?;
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let mut recorder = Recorder::new(gpu, &mut encoder);
-        small.geometry.record(&mut recorder, &stage.casters, &small.halves[0].frame.view)?;
-        small.halves[0].picture.record(&mut recorder, &small.halves[0].frame, &small.geometry)?;
+        let half = &small.halves[0];
+        gpu.submit(|recorder| {
+            small.geometry.record(recorder, &stage.casters, &half.frame.view)?;
+            shade(recorder, &half.frame, &small.geometry, &half.image)
+        })?;
         Ok(stage)
     }
 
@@ -62,9 +64,9 @@ impl Stage {
         scene: &Scene,
         casters: Arc<Casters>,
         spec: &antumbra::Spec,
-    ) -> Result<Box<dyn Technique>, Error> {
+    ) -> Result<Shadows, Error> {
         Stage::compile(gpu, scene, casters, spec, false).await?;
-        gpu.checked(|| spec.make(gpu)).await
+        gpu.checked(|| Shadows::from_spec(gpu, spec)).await
     }
 
     /// Compiles all that a technique will need, where somebody looks inside or not. Takes a while: not for the thread that
@@ -74,15 +76,15 @@ impl Stage {
         scene: &Scene,
         casters: Arc<Casters>,
         spec: &antumbra::Spec,
-        looked_at: bool,
+        captured: bool,
     ) -> Result<(), Error> {
         gpu.checked(|| {
             let small = Canvas::of(gpu, scene, casters, [8, 8])?;
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             // One that is thrown away: it believes in maps that were recorded and never drawn.
-            let mut technique = spec.make(gpu)?;
-            technique.look_inside(looked_at);
-            technique.record(&small.halves[0].frame, &mut Recorder::new(gpu, &mut encoder))
+            let mut technique = Shadows::from_spec(gpu, spec)?;
+            technique.set_debug_capture(captured);
+            technique.record(gpu, &mut encoder, &small.halves[0].frame)
         })
         .await
     }
@@ -141,6 +143,7 @@ pub struct Canvas {
     pub halves: [Half; 2],
     /// `R32Float`: the truth as far as it is known; under 0 where errors are not measured.
     pub truth: Texture,
+    resources: Resources,
 }
 
 /// One picture.
@@ -149,12 +152,12 @@ pub struct Half {
     pub frame: Frame,
     /// `R32Float`: what its technique fills.
     pub visibility: Texture,
-    /// What is shown.
-    pub picture: Picture,
+    /// The image that is shown.
+    pub image: Texture,
+    resources: Resources,
 }
 
 const VALUES: wgpu::TextureUsages = wgpu::TextureUsages::STORAGE_BINDING
-    .union(wgpu::TextureUsages::TEXTURE_BINDING)
     .union(wgpu::TextureUsages::COPY_SRC)
     .union(wgpu::TextureUsages::COPY_DST);
 
@@ -166,22 +169,26 @@ impl Canvas {
 
     fn of(gpu: &Gpu, scene: &Scene, casters: Arc<Casters>, size: [u32; 2]) -> Result<Canvas, Error> {
         let geometry = GeometryBuffer::new(gpu, size)?;
-        let values = |label| Texture::new(gpu, label, size, 1, wgpu::TextureFormat::R32Float, VALUES);
-        let input = GeometryInput {
-            depth: geometry.depth.view.clone(),
-            normal: geometry.normal.view.clone(),
-            normal_error: frame::normal_error(geometry.normal.texture.format()),
-            size,
+        let values = |label| {
+            let description = TextureDescription::new(size, wgpu::TextureFormat::R32Float, label);
+            Texture::new(gpu, label, description.usage(VALUES))
         };
         let view = View::of_camera(&scene.camera, size);
         let half = |label| {
             let visibility = values(label);
-            let input = input.clone();
-            let frame = Frame::new(gpu, casters.clone(), input, visibility.view.clone(), view, scene.light)?;
-            Ok::<_, Error>(Half { frame, visibility, picture: Picture::new(gpu, size) })
+            let descriptor = FrameDescriptor {
+                view,
+                light: scene.light,
+                casters: &casters,
+                depth: &geometry.depth.view,
+                normals: &geometry.normal.view,
+                visibility: &visibility.view,
+            };
+            let frame = Frame::new(gpu, &descriptor)?;
+            Ok::<_, Error>(Half { frame, visibility, image: image_texture(gpu, size), resources: Resources::default() })
         };
         let halves = [half("visibility, left")?, half("visibility, right")?];
-        Ok(Canvas { size, halves, truth: values("truth"), geometry })
+        Ok(Canvas { size, halves, truth: values("truth"), geometry, resources: Resources::default() })
     }
 
     /// Moves camera, light and occluders.
@@ -190,6 +197,14 @@ impl Canvas {
             half.frame.casters = stage.casters();
             half.frame.update(gpu, view, light, frustum);
         }
+    }
+
+    /// Draws the surfaces that both halves show.
+    pub fn record_geometry(&mut self, gpu: &Gpu, casters: &Casters, view: &View) -> Result<(), Error> {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        self.geometry.record(&mut Recorder::new(gpu, &mut encoder, &mut self.resources), casters, view)?;
+        gpu.queue.submit([encoder.finish()]);
+        Ok(())
     }
 
     /// GPU memory of the host's part, in bytes.
@@ -222,20 +237,23 @@ impl Half {
         &mut self,
         gpu: &Gpu,
         timer: &mut Timer,
-        technique: Option<&mut (dyn Technique + 'static)>,
+        shadows: Option<&mut Shadows>,
         geometry: &GeometryBuffer,
         shown: (&Shown, Show, &Texture),
     ) -> Result<(), Error> {
-        if let Some(technique) = technique {
+        if let Some(shadows) = shadows {
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
-            technique.record(&self.frame, &mut Recorder::timed(gpu, &mut encoder, timer))?;
+            shadows.record_timed(gpu, &mut encoder, &self.frame, Some(timer))?;
             timer.submit(gpu, encoder)?;
         }
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let (pass, show, truth) = shown;
         match show {
-            Show::Picture => self.picture.record(&mut Recorder::new(gpu, &mut encoder), &self.frame, geometry)?,
-            _ => pass.record(gpu, &mut encoder, show, &self.visibility, truth, &self.picture.texture),
+            Show::Picture => {
+                let mut recorder = Recorder::new(gpu, &mut encoder, &mut self.resources);
+                shade(&mut recorder, &self.frame, geometry, &self.image)?;
+            }
+            _ => pass.record(gpu, &mut encoder, show, &self.visibility, truth, &self.image),
         }
         gpu.queue.submit([encoder.finish()]);
         Ok(())

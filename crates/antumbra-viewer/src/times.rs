@@ -1,6 +1,6 @@
 //! Milliseconds of each pass over the last frames.
 
-use antumbra::gpu::recorder::PassTime;
+use antumbra::gpu::timer::PassTime;
 use std::collections::VecDeque;
 
 /// Frames that are kept.

@@ -1,12 +1,10 @@
-//! A small renderer of its own — device, vertex layout, 16-bit indices, instances, depth prepass and normals — that
-//! borrows its buffers to Antumbra and shades with the visibility that it gets back. What concerns Antumbra stands
-//! between the two marked lines.
+//! A small renderer with a device, vertex layout, 16-bit indices, instances, depth prepass and normals of its own. It lends
+//! its buffers to Antumbra and shades with the visibility. The calls of Antumbra stand between the two marked lines.
 //!
 //!     cargo run --example bring_your_own_renderer -- backprojection shadow.ppm
 
-use antumbra::input::casters::{BorrowedMesh, Indices, Role, Transforms};
-use antumbra::input::frame;
-use antumbra::{Aabb, Casters, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Spec, View};
+use antumbra::input::casters::{MeshBuffers, Indices, Role, Transforms};
+use antumbra::{Aabb, Casters, Frame, FrameDescriptor, Gpu, RectLight, ShadowFrustum, Shadows, View};
 use glam::{Mat4, Quat, Vec2, Vec3};
 use std::{error::Error, sync::Arc};
 use wgpu::util::DeviceExt;
@@ -97,7 +95,7 @@ pub async fn render(technique: &str) -> Result<(Vec<f32>, Vec<u8>), Box<dyn Erro
     // ---- Antumbra: once ----
     let gpu = Gpu::from_host(host.device.clone(), host.queue.clone());
     let bounds = instances().iter().skip(1).fold(Aabb::EMPTY, |b, m| b.union(&cube_bounds(m)));
-    let mesh = BorrowedMesh {
+    let mesh = MeshBuffers {
         vertices: &host.vertices,
         position_offset: 0,
         vertex_stride: size_of::<Vertex>() as u64,
@@ -109,21 +107,25 @@ pub async fn render(technique: &str) -> Result<(Vec<f32>, Vec<u8>), Box<dyn Erro
         mask: None,
     };
     let casters = Arc::new(Casters::from_buffers(&gpu, &[mesh])?);
-    let normal_error = frame::normal_error(wgpu::TextureFormat::Rgba16Float);
-    let (depth, normal) = (host.depth.clone(), host.normals.clone());
-    let geometry = GeometryInput { depth, normal, normal_error, size: [SIZE; 2] };
-    let target = host.visibility.create_view(&Default::default());
-    let mut frame = Frame::new(&gpu, casters, geometry, target, view(), light())?;
-    let mut shadow = technique.parse::<Spec>()?.make(&gpu)?;
+    let mut frame = Frame::new(&gpu, &FrameDescriptor {
+        view: view(),
+        light: light(),
+        casters: &casters,
+        depth: &host.depth,
+        normals: &host.normals,
+        visibility: &host.visibility.create_view(&Default::default()),
+    })?;
+    // Typed settings where the technique is known: `Shadows::new(Pcss::make(&gpu, PcssSettings::default())?)`.
+    let mut shadows = Shadows::from_spec(&gpu, &technique.parse()?)?;
     // ---- each frame ----
     frame.update(&gpu, view(), light(), ShadowFrustum::around(&light(), &bounds));
-    shadow.record(&frame, &mut Recorder::new(&gpu, &mut encoder))?;
+    shadows.record(&gpu, &mut encoder, &frame)?;
     // ---- that was all ----
 
     host.shade(&mut encoder);
     host.queue.submit([encoder.finish()]);
-    let visibility = antumbra::gpu::resource::read_texture(&gpu, &host.visibility).await?;
-    let picture = antumbra::gpu::resource::read_texture(&gpu, &host.picture).await?;
+    let visibility = antumbra::gpu::readback::read_texture(&gpu, &host.visibility).await?;
+    let picture = antumbra::gpu::readback::read_texture(&gpu, &host.picture).await?;
     Ok((visibility.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect(), picture))
 }
 

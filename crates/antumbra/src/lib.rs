@@ -1,37 +1,51 @@
 //! Soft and anti-aliased shadows of area lights, as `wgpu` passes.
 //!
-//! A host hands over its device, its casters, depth and normals of its picture and a rectangular light; a technique
-//! from the [list](techniques::TECHNIQUES) fills a texture with the visible fraction of the light at each pixel: 1 lit,
-//! 0 umbra. Nothing here opens files or windows.
+//! A host hands over its device, its casters, the depth and normals of its image and a rectangular light; a technique from
+//! the [list](techniques::TECHNIQUES) fills a texture with the visible fraction of the light at each pixel: 1 lit, 0 umbra.
+//! Nothing here opens files or windows.
 //!
 //! ```no_run
-//! use antumbra::{Casters, Error, Frame, GeometryInput, Gpu, Recorder, RectLight, ShadowFrustum, Spec, View};
-//! # use antumbra::input::casters::BorrowedMesh;
-//! # fn host(device: wgpu::Device, queue: wgpu::Queue, mut encoder: wgpu::CommandEncoder, meshes: &[BorrowedMesh],
-//! #     geometry: GeometryInput, visibility: wgpu::TextureView, view: View, light: RectLight) -> Result<(), Error> {
-//! // Once, with what the renderer has anyway: device, vertex and index buffers, depth, normals, an R32Float texture.
-//! let gpu = Gpu::from_host(device, queue);
+//! use antumbra::input::casters::MeshBuffers;
+//! use antumbra::techniques::pcss::{Pcss, PcssSettings};
+//! use antumbra::{
+//!     Casters, Error, Frame, FrameDescriptor, Gpu, RectLight, ShadowFrustum, Shadows, TechniqueFactory, View, wgpu,
+//! };
+//!
+//! # struct Host { device: wgpu::Device, queue: wgpu::Queue, depth: wgpu::TextureView, normals: wgpu::TextureView,
+//! #     visibility: wgpu::TextureView, view: View, light: RectLight }
+//! # fn run(host: Host, meshes: &[MeshBuffers], mut encoder: wgpu::CommandEncoder) -> Result<(), Error> {
+//! // Once: device, vertex and index buffers, depth, normals and an R32Float texture are the host's own.
+//! let gpu = Gpu::from_host(host.device, host.queue);
 //! let casters = std::sync::Arc::new(Casters::from_buffers(&gpu, meshes)?);
-//! let bounds = casters.bounds();
-//! let mut frame = Frame::new(&gpu, casters, geometry, visibility, view, light)?;
-//! let mut shadow = "pcss:map=1024".parse::<Spec>()?.make(&gpu)?;
+//! let mut frame = Frame::new(&gpu, &FrameDescriptor {
+//!     view: host.view,
+//!     light: host.light,
+//!     casters: &casters,
+//!     depth: &host.depth,
+//!     normals: &host.normals,
+//!     visibility: &host.visibility,
+//! })?;
+//! let mut shadows = Shadows::new(Pcss::make(&gpu, PcssSettings { map: 1024, ..Default::default() })?);
 //!
 //! // Each frame, between the depth prepass and the shading that reads the visibility.
-//! frame.update(&gpu, view, light, ShadowFrustum::around(&light, &bounds));
-//! shadow.record(&frame, &mut Recorder::new(&gpu, &mut encoder))?;
+//! frame.update(&gpu, host.view, host.light, ShadowFrustum::around(&host.light, &casters.bounds()));
+//! shadows.record(&gpu, &mut encoder, &frame)?;
 //! # Ok(()) }
 //! ```
 //!
-//! `examples/bring_your_own_renderer.rs` is a whole host of that kind, and a test compares its picture with the
-//! ray-traced truth. Programs without a renderer of their own draw a whole [`antumbra_scene::Scene`] with
-//! [`scene::SceneRenderer`].
+//! `examples/bring_your_own_renderer.rs` is a whole host of that kind, and a test compares its image with the ray-traced
+//! truth. Programs without a renderer draw a whole [`antumbra_scene::Scene`] with [`scene::SceneRenderer`].
 //!
 //! # Where to look
 //!
-//! - What goes in and what comes out: [`Frame`], [`GeometryInput`], [`casters::BorrowedMesh`], [`ShadowFrustum`].
-//! - Which techniques there are and what can be set: [`techniques::TECHNIQUES`], [`Spec`].
-//! - Time and memory: [`Timer`], [`Technique::memory`].
-//! - Writing a technique: [`technique::TechniqueFactory`], the [`passes`] that several techniques share, and `CONTRIBUTING.md`.
+//! - Input and output: [`FrameDescriptor`], [`input::casters::MeshBuffers`], [`ShadowFrustum`].
+//! - Techniques and their settings: [`techniques::TECHNIQUES`], [`Spec`].
+//! - Time, memory and debug views: [`Timer`], [`Shadows`].
+//! - Writing a technique: [`TechniqueFactory`], [`gpu::recorder::Recorder`], the [`passes`] that several techniques share,
+//!   and `CONTRIBUTING.md`.
+//!
+//! The modules are in the order in which they use each other: [`error`], [`gpu`], [`input`], [`technique`], shared
+//! shaders, [`passes`], [`techniques`], [`shadows`], [`scene`].
 #![deny(missing_docs)]
 
 pub mod error;

@@ -10,7 +10,8 @@ use crate::input::casters::{BatchLayout, Casters, CastersBuilder, Role, clusters
 use crate::input::classification::roles_with_pauses;
 use crate::input::frame::{Frame, FrameDescriptor, View};
 use crate::input::frustum::ShadowFrustum;
-use crate::passes::pixels::{geometry_buffer::GeometryBuffer, picture};
+use crate::passes::pixels::geometry_buffer::GeometryBuffer;
+use crate::passes::pixels::shading;
 use antumbra_scene::slices::{RUN, at_once};
 use antumbra_scene::{Aabb, Instance, Material, Mesh, Scene, Wrap};
 use glam::{Mat4, Vec3};
@@ -59,10 +60,8 @@ impl SceneRenderer {
 
     /// Shades with the visibility texture and returns 8-bit sRGB RGBA, row 0 on top.
     pub async fn image(&self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
-        let (mut encoder, mut resources) =
-            (gpu.device.create_command_encoder(&Default::default()), Resources::default());
-        let image = picture::shade(&mut Recorder::new(gpu, &mut encoder, &mut resources), &self.frame, &self.geometry)?;
-        gpu.queue.submit([encoder.finish()]);
+        let image = shading::image_texture(gpu, self.frame.size);
+        gpu.submit(|recorder| shading::shade(recorder, &self.frame, &self.geometry, &image))?;
         gpu.read_texture(&image).await
     }
 

@@ -8,6 +8,7 @@ use crate::gpu::resources::{Memory, Resources};
 use crate::gpu::timer::Timer;
 use crate::input::frame::Frame;
 use crate::technique::{StatsFuture, Technique};
+use crate::techniques::spec::Spec;
 
 /// The shadows of one light by one technique. Textures and buffers are made by the first frame and kept.
 pub struct Shadows {
@@ -18,11 +19,12 @@ pub struct Shadows {
 impl Shadows {
     /// Shadows by this technique.
     pub fn new(technique: impl Technique + 'static) -> Shadows {
-        Shadows::of_boxed(Box::new(technique))
+        Shadows { technique: Box::new(technique), resources: Resources::default() }
     }
 
-    pub(crate) fn of_boxed(technique: Box<dyn Technique>) -> Shadows {
-        Shadows { technique, resources: Resources::default() }
+    /// Shadows by the technique of a SPEC, for command lines.
+    pub fn from_spec(gpu: &Gpu, spec: &Spec) -> Result<Shadows, Error> {
+        Ok(Shadows { technique: spec.make(gpu)?, resources: Resources::default() })
     }
 
     /// Records all passes that fill the frame's visibility. Nothing waits, and a frame like the last one makes no

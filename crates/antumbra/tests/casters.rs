@@ -5,7 +5,7 @@ mod host;
 
 mod common;
 
-use antumbra::input::casters::{BorrowedMesh, Indices, Mask};
+use antumbra::input::casters::{MeshBuffers, Indices, Mask};
 use antumbra::passes::maps::depth_map::DepthMap;
 use antumbra::{Aabb, Casters, Error};
 use antumbra_reference::{Ray, Tracer};
@@ -35,7 +35,7 @@ fn wedges() -> Scene {
 /// Visibility of a scene whose casters lie in a host's buffers.
 fn borrowed(scene: &Scene, layout: Layout) -> Vec<f32> {
     let hosts: Vec<Host> = (0..scene.meshes.len()).map(|m| Host::new(scene, m, layout)).collect();
-    let meshes: Vec<BorrowedMesh> = hosts.iter().map(Host::mesh).collect();
+    let meshes: Vec<MeshBuffers> = hosts.iter().map(Host::mesh).collect();
     let casters = Casters::from_buffers(gpu(), &meshes).unwrap_or_else(|e| panic!("{layout:?}: {e}"));
     assert_eq!(casters.triangle_count(), scene.triangle_count() as u64, "{layout:?}");
     assert_eq!(casters.bounds(), scene.bounds(), "{layout:?}");
@@ -99,7 +99,7 @@ fn a_transform_that_is_not_mirrored_is_caught() {
 }
 
 /// What is wrong with a mesh after `spoil`.
-fn refusal(spoil: impl for<'a> FnOnce(&mut BorrowedMesh<'a>, &'a wgpu::Buffer)) -> String {
+fn refusal(spoil: impl for<'a> FnOnce(&mut MeshBuffers<'a>, &'a wgpu::Buffer)) -> String {
     let host = Host::new(&wedges(), 1, Layout::PLAIN);
     let useless = host::buffer(&[0; 4096], wgpu::BufferUsages::COPY_DST);
     let mut mesh = host.mesh();
@@ -155,7 +155,7 @@ fn a_mask_that_makes_no_sense_is_refused() {
         (12, f32::NAN, "cutoff of NaN"),
     ] {
         let mask = Mask { texture: &texture, sampler: &sampler, uv_offset, cutoff };
-        let refused = Casters::from_buffers(gpu(), &[BorrowedMesh { mask: Some(mask), ..leaf.mesh() }]);
+        let refused = Casters::from_buffers(gpu(), &[MeshBuffers { mask: Some(mask), ..leaf.mesh() }]);
         let message = refused.err().expect("it was taken").to_string();
         assert!(message.contains(words), "`{words}` is not said by: {message}");
     }
@@ -294,7 +294,7 @@ fn a_borrowed_mask_cuts_what_an_uploaded_one_cuts() {
     let (ground, leaf) = (Host::new(&scene, 0, layout), Host::new(&scene, 1, layout));
     let (texture, sampler) = host::texture(scene.materials[1].texture.as_ref().expect("it has one"));
     let mask = Mask { texture: &texture, sampler: &sampler, uv_offset: 12, cutoff: 0.5 };
-    let cut = BorrowedMesh { mask: Some(mask), ..leaf.mesh() };
+    let cut = MeshBuffers { mask: Some(mask), ..leaf.mesh() };
     let visibility =
         |mesh| with_casters(&scene, Casters::from_buffers(gpu(), &[ground.mesh(), mesh]).expect("borrows"));
     let (largest, differing) = difference(&visibility(cut), &uploaded(&scene));

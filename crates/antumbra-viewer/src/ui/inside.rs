@@ -4,7 +4,7 @@ use super::{Memory, style};
 use crate::desk::{Desk, Inside};
 use crate::inspect;
 use crate::session::Session;
-use antumbra::technique::{InnerContent, InnerPicture};
+use antumbra::gpu::debug_view::{DebugContent, DebugLayout, DebugView};
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Vec2, pos2};
 use eframe::egui_wgpu::RenderState;
 
@@ -13,7 +13,7 @@ pub fn show(ctx: &egui::Context, render: &RenderState, desk: &mut Desk, session:
     let Some(mut inside) = desk.inside.clone() else { return };
     inside.half = inside.half.min(desk.techniques() - 1);
     let mut open = true;
-    egui::Window::new("Look inside")
+    egui::Window::new("Debug views")
         .open(&mut open)
         .default_size([380.0, 470.0])
         .default_pos(pos2(24.0, 120.0))
@@ -40,7 +40,7 @@ fn window(
         ui.weak("nothing is drawn yet");
         return;
     };
-    let pictures: Vec<InnerPicture> = technique.inner_pictures().into_iter().filter(inspect::is_shown).collect();
+    let pictures: Vec<DebugView> = technique.debug_views().into_iter().filter(inspect::is_shown).collect();
     let Some(picture) = pictures.iter().find(|p| p.name == inside.name).or(pictures.first()) else {
         ui.weak(format!("{} has nothing to look at", choice.technique.name));
         return;
@@ -62,14 +62,14 @@ fn window(
     let side = ui.available_width().min(ui.available_height() - 22.0).max(64.0);
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());
     match &picture.content {
-        InnerContent::LightPoints(points) => dots(ui, rect, points),
+        DebugContent::LightPoints(points) => dots(ui, rect, points),
         content => {
             let id = *memory.inner.get_or_insert_with(|| {
                 let view = &session.inspector.shown.view;
                 render.renderer.write().register_native_texture(&render.device, view, wgpu::FilterMode::Nearest)
             });
             let rect = match content {
-                InnerContent::Pixels { size, .. } | InnerContent::Numbers { size, .. } => {
+                DebugContent::Buffer(_, DebugLayout::Pixels { size } | DebugLayout::Numbers { size, .. }) => {
                     fitted(rect, size[0] as f32 / size[1].max(1) as f32)
                 }
                 _ => rect,
@@ -84,7 +84,7 @@ fn window(
 }
 
 /// Layer, level and channel, where there are several.
-fn part(ui: &mut egui::Ui, content: &InnerContent, inside: &mut Inside) {
+fn part(ui: &mut egui::Ui, content: &DebugContent, inside: &mut Inside) {
     let [layers, levels, channels] = inspect::parts(content);
     let part = &mut inside.part;
     part.layer = part.layer.min(layers - 1);

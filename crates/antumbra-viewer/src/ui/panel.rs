@@ -66,9 +66,9 @@ fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: us
         if ui.button("Copy SPEC").on_hover_text(choice.text()).clicked() {
             wishes.save = Some(super::Save::Spec(half));
         }
-        let can_look = state.made.as_ref().is_some_and(|m| !m.1.inner_pictures().is_empty());
+        let can_look = state.made.as_ref().is_some_and(|m| !m.1.debug_views().is_empty());
         ui.add_enabled_ui(can_look, |ui| {
-            if ui.button("Look inside").on_hover_text("Its maps and lists as pictures").clicked() {
+            if ui.button("Debug views").on_hover_text("Its maps and lists as pictures").clicked() {
                 desk.inside = Some(Inside { half, ..Inside::default() });
             }
         });

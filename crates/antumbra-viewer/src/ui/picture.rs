@@ -229,7 +229,7 @@ fn register(render: &RenderState, session: &Session, memory: &mut Memory) {
         old.iter().for_each(|id| renderer.free_texture(id));
     }
     let mut add = |i: usize| {
-        let view = &canvas.halves[i].picture.texture.view;
+        let view = &canvas.halves[i].image.view;
         renderer.register_native_texture(&render.device, view, wgpu::FilterMode::Linear)
     };
     memory.textures = Some(([add(0), add(1)], session.resized));

@@ -87,7 +87,7 @@ pub struct Mask<'a> {
 
 /// A mesh in the host's own buffers, which are neither copied nor changed.
 #[derive(Clone, Copy, Debug)]
-pub struct BorrowedMesh<'a> {
+pub struct MeshBuffers<'a> {
     /// Needs `STORAGE`.
     pub vertices: &'a wgpu::Buffer,
     /// Position (three `f32`, object space, metres) of vertex 0, in bytes; a multiple of 4.
@@ -183,7 +183,7 @@ pub struct Casters {
 impl Casters {
     /// Takes meshes that lie in the host's buffers. Call it again when a buffer, a layout or a count changes; moved
     /// instances need no call, moved vertices need [`Casters::refit`].
-    pub fn from_buffers(gpu: &Gpu, meshes: &[BorrowedMesh]) -> Result<Casters, Error> {
+    pub fn from_buffers(gpu: &Gpu, meshes: &[MeshBuffers]) -> Result<Casters, Error> {
         let mut builder = CastersBuilder::new(gpu);
         for (index, mesh) in meshes.iter().enumerate() {
             check(mesh).map_err(|message| Error::Casters { mesh: index, message })?;
@@ -338,7 +338,7 @@ impl<'a> CastersBuilder<'a> {
 }
 
 /// The reason why a mesh cannot be borrowed.
-fn check(mesh: &BorrowedMesh) -> Result<(), String> {
+fn check(mesh: &MeshBuffers) -> Result<(), String> {
     let storage = |buffer: &wgpu::Buffer, what: &str| {
         if buffer.usage().contains(wgpu::BufferUsages::STORAGE) {
             return Ok(());

@@ -3,8 +3,7 @@
 use super::TECHNIQUES;
 use crate::error::{Error, SpecError};
 use crate::gpu::device::Gpu;
-use crate::shadows::Shadows;
-use crate::technique::TechniqueInfo;
+use crate::technique::{Technique, TechniqueInfo};
 use crate::technique::settings::{nearest, parse_values};
 use serde_json::{Map, Value};
 
@@ -34,8 +33,8 @@ impl std::str::FromStr for Spec {
 
 impl Spec {
     /// Makes the technique.
-    pub fn make(&self, gpu: &Gpu) -> Result<Shadows, Error> {
-        Ok(Shadows::of_boxed((self.technique.make)(gpu, self.settings.clone())?))
+    pub fn make(&self, gpu: &Gpu) -> Result<Box<dyn Technique>, Error> {
+        (self.technique.make)(gpu, self.settings.clone())
     }
 }
 

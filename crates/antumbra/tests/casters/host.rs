@@ -2,7 +2,7 @@
 
 use crate::common::gpu;
 use antumbra::Aabb;
-use antumbra::input::casters::{BorrowedMesh, Indices, Role, Transforms};
+use antumbra::input::casters::{MeshBuffers, Indices, Role, Transforms};
 use antumbra_scene::Scene;
 use glam::Mat4;
 use wgpu::util::DeviceExt;
@@ -71,9 +71,9 @@ impl Host {
         }
     }
 
-    pub fn mesh(&self) -> BorrowedMesh<'_> {
+    pub fn mesh(&self) -> MeshBuffers<'_> {
         let l = &self.layout;
-        BorrowedMesh {
+        MeshBuffers {
             vertices: &self.vertices,
             position_offset: l.position_offset,
             vertex_stride: l.vertex_stride,

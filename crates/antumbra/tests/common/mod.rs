@@ -33,7 +33,8 @@ pub fn quick(info: &antumbra::TechniqueInfo) -> String {
 
 /// A technique from its SPEC.
 pub fn technique(spec: &str) -> Shadows {
-    spec.parse::<Spec>().unwrap_or_else(|e| panic!("{e}")).make(gpu()).unwrap_or_else(|e| panic!("{spec}: {e}"))
+    let parsed = spec.parse::<Spec>().unwrap_or_else(|e| panic!("{e}"));
+    Shadows::from_spec(gpu(), &parsed).unwrap_or_else(|e| panic!("{spec}: {e}"))
 }
 
 /// A scene with its geometry buffer drawn.

@@ -3,5 +3,5 @@
 pub mod classify;
 pub mod geometry_buffer;
 pub mod penumbra_widths;
-pub mod picture;
+pub mod shading;
 // TODO(convert) pub mod sparse;
