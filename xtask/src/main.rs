@@ -2,6 +2,7 @@
 
 mod fuzz;
 mod machine;
+mod same_bits;
 mod step;
 mod toolchain;
 mod web;
@@ -13,6 +14,8 @@ use step::{Failure, Step, available, cargo};
 const USAGE: &str = "\
 cargo xtask demo [ARGUMENT …]         compare techniques on a built-in scene; arguments go on to `antumbra compare`
 cargo xtask test                      formatting, lints, documentation and all tests, as the CI does
+cargo xtask docs                      write the tables of settings in docs/techniques anew
+cargo xtask same-bits COMMIT [SCENE …]  compare every technique's visibility with that at a commit, bit for bit
 cargo xtask fuzz [TARGET] [SECONDS]   fuzz one importer, or all in turn, for 60 seconds each
 cargo xtask web [--out FOLDER]        build the web page of the viewer, for any web server
 cargo xtask test-web                  build it and drive it in a headless browser";
@@ -22,6 +25,8 @@ fn main() -> ExitCode {
     let outcome = match arguments.split_first() {
         Some((task, rest)) if task == "demo" => demo(rest),
         Some((task, [])) if task == "test" => test(),
+        Some((task, [])) if task == "docs" => docs(),
+        Some((task, rest)) if task == "same-bits" => same_bits::run(rest),
         Some((task, rest)) if task == "fuzz" => fuzz::run(rest),
         Some((task, rest)) if task == "web" => web::run(rest),
         Some((task, rest)) if task == "test-web" => web::test(rest),
@@ -55,6 +60,13 @@ fn demo(more: &[String]) -> Result<(), Failure> {
     }
     // Mesa's device chooser complains of a missing display on every start; the program chooses its adapter itself.
     Step::new("demo", compare.env("NODEVICE_SELECT", "1")).run()?;
+    Ok(())
+}
+
+/// Writes what the documents have from the code: the test that compares them rewrites them instead.
+fn docs() -> Result<(), Failure> {
+    let line = cargo(["test", "-p", "antumbra", "--test", "docs"]).env("UPDATE_DOCS", "1");
+    Step::new("docs", line).run()?;
     Ok(())
 }
 

@@ -14,6 +14,7 @@ mod framing;
 pub mod import;
 mod light;
 mod load;
+mod read_file;
 mod mesh;
 mod scene;
 #[cfg(feature = "scene-file")]
@@ -24,6 +25,7 @@ pub use bounds::Aabb;
 pub use camera::Camera;
 pub use error::{Place, SceneError};
 pub use light::RectLight;
-pub use load::{ReadFile, load, load_from};
+pub use load::{load, load_from};
+pub use read_file::ReadFile;
 pub use mesh::{Material, Mesh, Texture, Wrap};
 pub use scene::{Instance, Scene};

@@ -1,9 +1,7 @@
 //! From what a user writes to a scene.
 
+use crate::read_file::ReadFile;
 use crate::{Scene, SceneError, builtin};
-
-/// Gives the bytes of a file by its path, or by whatever names files where there is no disk.
-pub type ReadFile<'a> = dyn FnMut(&str) -> std::io::Result<Vec<u8>> + 'a;
 
 /// Loads the scene that an argument names: `builtin:NAME[:key=value,…]`, a model (`.glb`, `.gltf`, `.obj`, `.ply`) or a
 /// scene file (`.toml`, `.json`), in upper or lower case.
