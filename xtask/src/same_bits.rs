@@ -59,7 +59,8 @@ fn program(commit: &str, folder: &Path) -> Result<PathBuf, Failure> {
     } else {
         Step::new("worktree", git(&["worktree", "add", "--force", "--detach", &place, hash.trim()])).run()?;
     }
-    let build = cargo(["build", "--bin", "antumbra"]).folder(&sources).env("CARGO_TARGET_DIR", target().into_os_string());
+    let build =
+        cargo(["build", "--bin", "antumbra"]).folder(&sources).env("CARGO_TARGET_DIR", target().into_os_string());
     Step::new("build of the earlier commit", build).run()?;
     let built = target().join("debug").join("antumbra");
     fs::copy(&built, &kept).map_err(|e| Failure::Machine(format!("{}: {e}", built.display())))?;

@@ -52,7 +52,8 @@ impl Crate {
 
     /// For each file the files that it imports, with the path as written.
     fn imports(&self) -> Vec<Vec<(usize, String)>> {
-        let of = |s: &Source| paths(s).into_iter().filter_map(|(p, written)| Some((self.file_of(&p)?, written))).collect();
+        let of =
+            |s: &Source| paths(s).into_iter().filter_map(|(p, written)| Some((self.file_of(&p)?, written))).collect();
         self.sources.iter().map(of).collect()
     }
 }
@@ -86,7 +87,8 @@ fn module_of(src: &Path, file: &Path) -> Vec<String> {
 fn modules_for_tests(texts: &[(Vec<String>, String)]) -> Vec<Vec<String>> {
     let of = |(module, text): &(Vec<String>, String)| {
         let declared = text.split("#[cfg(test)]\n").skip(1);
-        let names = declared.filter_map(|rest| Some(rest.lines().next()?.split_once("mod ")?.1.strip_suffix(';')?.to_owned()));
+        let names =
+            declared.filter_map(|rest| Some(rest.lines().next()?.split_once("mod ")?.1.strip_suffix(';')?.to_owned()));
         let parent = if *module == ["lib"] || *module == ["main"] { Vec::new() } else { module.clone() };
         names.map(|name| [parent.clone(), vec![name]].concat()).collect::<Vec<_>>()
     };
@@ -95,7 +97,8 @@ fn modules_for_tests(texts: &[(Vec<String>, String)]) -> Vec<Vec<String>> {
 
 /// Code without comments, and without the tests at a file's end.
 fn bare(text: &str) -> String {
-    let end = text.find("\n#[cfg(test)]\nmod ").filter(|at| text[at + 19..].lines().next().is_some_and(|l| l.ends_with('{')));
+    let end =
+        text.find("\n#[cfg(test)]\nmod ").filter(|at| text[at + 19..].lines().next().is_some_and(|l| l.ends_with('{')));
     let code = text[..end.unwrap_or(text.len())].lines().map(|line| line.split("//").next().unwrap_or_default());
     code.collect::<Vec<_>>().join("\n")
 }
@@ -217,7 +220,8 @@ fn circles(krate: &Crate) -> Vec<String> {
             seen
         })
         .collect();
-    let is_folder = |module: &[String]| krate.sources.iter().any(|s| s.module.len() > module.len() && s.module.starts_with(module));
+    let is_folder =
+        |module: &[String]| krate.sources.iter().any(|s| s.module.len() > module.len() && s.module.starts_with(module));
     let folder = |i: usize| {
         let module = &krate.sources[i].module;
         let end = if is_folder(module) { module.len() } else { module.len() - 1 };
@@ -244,9 +248,7 @@ fn each_folder_of_the_library_uses_only_those_above_it() {
 
 #[test]
 fn no_circle_of_imports_leads_through_several_folders() {
-    let of = |(name, krate): (String, Crate)| {
-        circles(&krate).into_iter().map(move |pair| format!("{name}: {pair}"))
-    };
+    let of = |(name, krate): (String, Crate)| circles(&krate).into_iter().map(move |pair| format!("{name}: {pair}"));
     let found: Vec<String> = crates().into_iter().flat_map(of).collect();
     assert!(found.is_empty(), "{} pairs of files:\n{}", found.len(), found.join("\n"));
 }
@@ -254,10 +256,8 @@ fn no_circle_of_imports_leads_through_several_folders() {
 /// The check itself must fail where it should.
 #[test]
 fn a_wrong_import_and_a_circle_are_found() {
-    let source = |module: &str, code: &str| Source {
-        module: module.split("::").map(str::to_owned).collect(),
-        code: bare(code),
-    };
+    let source =
+        |module: &str, code: &str| Source { module: module.split("::").map(str::to_owned).collect(), code: bare(code) };
     let names = BTreeMap::from([("Error".to_owned(), 1)]);
     let sources = vec![
         source("gpu", "pub mod device;"),

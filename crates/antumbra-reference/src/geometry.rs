@@ -2,7 +2,6 @@
 
 use crate::cutout::Cutout;
 use antumbra_scene::Scene;
-use antumbra_scene::slices::{RUN, at_once};
 use glam::{DVec3, Vec3};
 
 /// A world-space triangle in single precision: exactly these three points are the surface.
@@ -62,39 +61,38 @@ pub(crate) struct Geometry {
 impl Geometry {
     /// Flattens all instances; degenerate triangles are left out.
     pub fn of_scene(scene: &Scene) -> Geometry {
-        at_once(Geometry::with_pauses(scene, &mut async || true)).expect("it is never told to stop")
+        let mut geometry = Geometry::with_room(scene);
+        (0..scene.instances.len()).for_each(|i| geometry.add(scene, i));
+        geometry
     }
 
-    /// The same with a pause after every few thousand triangles; none once `pause` says to stop.
-    pub async fn with_pauses(scene: &Scene, pause: &mut impl AsyncFnMut() -> bool) -> Option<Geometry> {
+    /// No triangles yet.
+    pub fn with_room(scene: &Scene) -> Geometry {
         let count = scene.triangle_count();
-        let mut g =
-            Geometry { triangles: Vec::with_capacity(count), sources: Vec::with_capacity(count), cutouts: Vec::new() };
-        for (i, instance) in scene.instances.iter().enumerate() {
-            let mesh = &scene.meshes[instance.mesh];
-            let material = scene.materials.get(mesh.material).filter(|m| m.is_masked());
-            let world: Vec<Vec3> =
-                mesh.positions.iter().map(|&p| instance.world_from_object.transform_point3(p)).collect();
-            let base_tag = if instance.receiver_only { RECEIVER_ONLY } else { 0 };
-            for (k, corner) in mesh.indices.chunks_exact(3).enumerate() {
-                let corner = [corner[0] as usize, corner[1] as usize, corner[2] as usize];
-                let mut triangle = Triangle { vertices: corner.map(|c| world[c]), tag: base_tag };
-                if triangle.is_degenerate() {
-                    continue;
-                }
-                if let Some(material) = material {
-                    let uvs = corner.map(|c| mesh.uvs.get(c).copied().unwrap_or_default());
-                    g.cutouts.push(Cutout::new(uvs, material));
-                    triangle.tag |= g.cutouts.len() as u32;
-                }
-                g.triangles.push(triangle);
-                g.sources.push(Source { instance: i as u32, triangle: k as u32 });
-                if k % RUN == RUN - 1 && !pause().await {
-                    return None;
-                }
+        Geometry { triangles: Vec::with_capacity(count), sources: Vec::with_capacity(count), cutouts: Vec::new() }
+    }
+
+    /// Adds the triangles of an instance.
+    pub fn add(&mut self, scene: &Scene, index: usize) {
+        let instance = &scene.instances[index];
+        let mesh = &scene.meshes[instance.mesh];
+        let material = scene.materials.get(mesh.material).filter(|m| m.is_masked());
+        let world: Vec<Vec3> = mesh.positions.iter().map(|&p| instance.world_from_object.transform_point3(p)).collect();
+        let base_tag = if instance.receiver_only { RECEIVER_ONLY } else { 0 };
+        for (k, corner) in mesh.indices.chunks_exact(3).enumerate() {
+            let corner = [corner[0] as usize, corner[1] as usize, corner[2] as usize];
+            let mut triangle = Triangle { vertices: corner.map(|c| world[c]), tag: base_tag };
+            if triangle.is_degenerate() {
+                continue;
             }
+            if let Some(material) = material {
+                let uvs = corner.map(|c| mesh.uvs.get(c).copied().unwrap_or_default());
+                self.cutouts.push(Cutout::new(uvs, material));
+                triangle.tag |= self.cutouts.len() as u32;
+            }
+            self.triangles.push(triangle);
+            self.sources.push(Source { instance: index as u32, triangle: k as u32 });
         }
-        Some(g)
     }
 
     /// Puts the triangles in the order of `order`, which may leave some out.

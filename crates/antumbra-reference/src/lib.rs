@@ -25,5 +25,5 @@ mod view;
 pub mod cache;
 
 pub use picture::{Reference, ReferenceError, Settings, trace, trace_centre};
-pub use tracer::{Hit, Ray, Tracer};
+pub use tracer::{Hit, Ray, Tracer, TracerBuild};
 pub use view::{Pixel, View};

@@ -5,49 +5,76 @@ use crate::bvh::{Bounds, Bvh, Node, tree};
 use crate::geometry::{Geometry, Triangle};
 use glam::Vec3;
 use obvhs::BvhBuildParams;
+use std::ops::Range;
 
 /// Triangles of a part at most: its tree takes some tens of milliseconds.
 const MOST: usize = 1 << 13;
 
-/// Builds the tree and puts the triangles in its order; none once `pause` says to stop.
-pub(crate) async fn build(geometry: Geometry, pause: &mut impl AsyncFnMut() -> bool) -> Option<(Bvh, Geometry)> {
-    let count = geometry.triangles.len();
-    let mut ordered =
-        Geometry { triangles: Vec::with_capacity(count), sources: Vec::with_capacity(count), cutouts: Vec::new() };
-    if count == 0 {
-        return Some((Bvh { nodes: Vec::new() }, geometry));
+/// A tree under construction: an iterator whose every step halves a run of triangles or builds the tree of a part.
+pub(crate) struct PartsBuild {
+    geometry: Geometry,
+    /// The triangles in the order of the parts so far.
+    ordered: Geometry,
+    scale: Vec3,
+    order: Vec<u32>,
+    nodes: Vec<Node>,
+    /// Nodes to fill, each with its run of the order.
+    open: Vec<(usize, Range<usize>)>,
+    /// Nodes above the parts, a parent before its children.
+    inner: Vec<usize>,
+}
+
+const NOTHING: Node = Node { min: Vec3::ZERO, max: Vec3::ZERO, first: 0, count: 0 };
+
+impl PartsBuild {
+    /// Begins with all triangles in one run.
+    pub fn new(geometry: Geometry) -> PartsBuild {
+        let count = geometry.triangles.len();
+        PartsBuild {
+            ordered: Geometry {
+                triangles: Vec::with_capacity(count),
+                sources: Vec::with_capacity(count),
+                cutouts: Vec::new(),
+            },
+            scale: geometry.triangles.iter().flat_map(|t| t.vertices).fold(Vec3::ZERO, |m, v| m.max(v.abs())),
+            order: (0..count as u32).collect(),
+            nodes: if count == 0 { Vec::new() } else { vec![NOTHING] },
+            open: if count == 0 { Vec::new() } else { vec![(0, 0..count)] },
+            inner: Vec::new(),
+            geometry,
+        }
     }
-    let scale = geometry.triangles.iter().flat_map(|t| t.vertices).fold(Vec3::ZERO, |m, v| m.max(v.abs()));
-    let mut order: Vec<u32> = (0..count as u32).collect();
-    let nothing = Node { min: Vec3::ZERO, max: Vec3::ZERO, first: 0, count: 0 };
-    let mut nodes = vec![nothing];
-    // Nodes to fill, each with its run of the order.
-    let mut open = vec![(0usize, 0..count)];
-    // Nodes above the parts, a parent before its children.
-    let mut inner = Vec::new();
-    while let Some((at, run)) = open.pop() {
+
+    /// The tree and the triangles in its order, once the iterator has ended.
+    pub fn finish(mut self) -> (Bvh, Geometry) {
+        for at in self.inner.into_iter().rev() {
+            let first = self.nodes[at].first as usize;
+            let (a, b) = (self.nodes[first], self.nodes[first + 1]);
+            (self.nodes[at].min, self.nodes[at].max) = (a.min.min(b.min), a.max.max(b.max));
+        }
+        self.ordered.cutouts = self.geometry.cutouts;
+        (Bvh { nodes: self.nodes }, self.ordered)
+    }
+}
+
+impl Iterator for PartsBuild {
+    type Item = ();
+
+    fn next(&mut self) -> Option<()> {
+        let (at, run) = self.open.pop()?;
         if run.len() <= MOST {
-            add_part(&geometry, &order[run], scale, (&mut nodes, at), &mut ordered);
+            add_part(&self.geometry, &self.order[run], self.scale, (&mut self.nodes, at), &mut self.ordered);
         } else {
             let middle = run.start + run.len() / 2;
-            halve(&geometry.triangles, &mut order[run.clone()]);
-            let first = nodes.len();
-            nodes.extend([nothing; 2]);
-            nodes[at].first = first as u32;
-            inner.push(at);
-            open.extend([(first, run.start..middle), (first + 1, middle..run.end)]);
+            halve(&self.geometry.triangles, &mut self.order[run.clone()]);
+            let first = self.nodes.len();
+            self.nodes.extend([NOTHING; 2]);
+            self.nodes[at].first = first as u32;
+            self.inner.push(at);
+            self.open.extend([(first, run.start..middle), (first + 1, middle..run.end)]);
         }
-        if !pause().await {
-            return None;
-        }
+        Some(())
     }
-    for at in inner.into_iter().rev() {
-        let first = nodes[at].first as usize;
-        let (a, b) = (nodes[first], nodes[first + 1]);
-        (nodes[at].min, nodes[at].max) = (a.min.min(b.min), a.max.max(b.max));
-    }
-    ordered.cutouts = geometry.cutouts;
-    Some((Bvh { nodes }, ordered))
 }
 
 /// Puts the half with the smaller coordinates first, along the axis on which the triangles' middles are spread most.
@@ -88,8 +115,7 @@ fn add_part(
 
 #[cfg(test)]
 mod tests {
-    use crate::tracer::{Ray, Tracer};
-    use antumbra_scene::slices::at_once;
+    use crate::tracer::{Ray, Tracer, TracerBuild};
     use glam::Vec3;
 
     #[test]
@@ -97,12 +123,9 @@ mod tests {
         // Several parts, and one.
         for spec in ["forest:trees=40", "square"] {
             let scene = antumbra_scene::builtin::build(spec).unwrap();
-            let mut pauses = 0;
-            let parts = at_once(Tracer::with_pauses(&scene, &mut async || {
-                pauses += 1;
-                true
-            }));
-            let (parts, whole) = (parts.unwrap(), Tracer::new(&scene));
+            let mut build = TracerBuild::new(&scene);
+            let steps = build.by_ref().count();
+            let (parts, whole) = (build.finish(), Tracer::new(&scene));
             assert_eq!(parts.triangle_count(), whole.triangle_count());
             let eye = scene.camera.eye;
             let mut met = 0;
@@ -115,14 +138,8 @@ mod tests {
                 assert_eq!(parts.occluded(eye, to), whole.occluded(eye, to), "{spec}: segment {k}");
                 met += usize::from(a.is_some());
             }
-            println!("{spec}: {} triangles, {pauses} pauses, {met} of 3000 rays met something", parts.triangle_count());
+            println!("{spec}: {} triangles, {steps} steps, {met} of 3000 rays met something", parts.triangle_count());
             assert!(met > 500, "{met}");
         }
-    }
-
-    #[test]
-    fn nobody_waits() {
-        let scene = antumbra_scene::builtin::build("square").unwrap();
-        assert!(at_once(Tracer::with_pauses(&scene, &mut async || false)).is_none());
     }
 }

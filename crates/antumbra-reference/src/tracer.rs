@@ -3,7 +3,7 @@
 use crate::bvh::Bvh;
 use crate::geometry::Geometry;
 use crate::packet::{LANES, NONE, Packet, Scratch, Target};
-use crate::parts;
+use crate::parts::PartsBuild;
 use antumbra_scene::Scene;
 use fearless_simd::Level;
 use glam::{DVec3, Vec3};
@@ -45,6 +45,43 @@ pub struct Hit {
     pub(crate) id: u32,
 }
 
+/// [`Tracer::new`] piece by piece, for programs with one thread: an iterator whose every step takes some milliseconds, of
+/// large scenes some tens of them. The tree is another one, and as good within a few percent.
+pub struct TracerBuild<'a> {
+    scene: &'a Scene,
+    instances: usize,
+    geometry: Geometry,
+    parts: Option<PartsBuild>,
+}
+
+impl<'a> TracerBuild<'a> {
+    /// Begins to build.
+    pub fn new(scene: &'a Scene) -> TracerBuild<'a> {
+        TracerBuild { scene, instances: 0, geometry: Geometry::with_room(scene), parts: None }
+    }
+
+    /// The tracer, once the iterator has ended.
+    pub fn finish(self) -> Tracer {
+        let (bvh, geometry) = self.parts.unwrap_or_else(|| PartsBuild::new(self.geometry)).finish();
+        Tracer { bvh, geometry, level: Level::new() }
+    }
+}
+
+impl Iterator for TracerBuild<'_> {
+    type Item = ();
+
+    fn next(&mut self) -> Option<()> {
+        if self.instances < self.scene.instances.len() {
+            self.geometry.add(self.scene, self.instances);
+            self.instances += 1;
+            return Some(());
+        }
+        let nothing = || Geometry { triangles: Vec::new(), sources: Vec::new(), cutouts: Vec::new() };
+        let flat = &mut self.geometry;
+        self.parts.get_or_insert_with(|| PartsBuild::new(std::mem::replace(flat, nothing()))).next()
+    }
+}
+
 /// A scene's triangles in a hierarchy. Watertight: a ray cannot slip between triangles that share an edge or a vertex,
 /// from either side [Woop, Benthin and Wald 2013]. Degenerate triangles are never hit.
 pub struct Tracer {
@@ -59,15 +96,6 @@ impl Tracer {
         let mut geometry = Geometry::of_scene(scene);
         let bvh = Bvh::build(&mut geometry);
         Tracer { bvh, geometry, level: Level::new() }
-    }
-
-    /// The same for programs that must do other things in between: after every few milliseconds, of large scenes every
-    /// few tens of them, it waits for `pause`; none once that says that nobody waits. The tree is another one, and as good
-    /// within a few parts in a hundred.
-    pub async fn with_pauses(scene: &Scene, pause: &mut impl AsyncFnMut() -> bool) -> Option<Tracer> {
-        let geometry = Geometry::with_pauses(scene, pause).await?;
-        let (bvh, geometry) = parts::build(geometry, pause).await?;
-        Some(Tracer { bvh, geometry, level: Level::new() })
     }
 
     /// Number of triangles that can be hit.

@@ -14,18 +14,17 @@ mod framing;
 pub mod import;
 mod light;
 mod load;
-mod read_file;
 mod mesh;
+mod read_file;
 mod scene;
 #[cfg(feature = "scene-file")]
 pub mod scene_file;
-pub mod slices;
 
 pub use bounds::Aabb;
 pub use camera::Camera;
 pub use error::{Place, SceneError};
 pub use light::RectLight;
 pub use load::{load, load_from};
-pub use read_file::ReadFile;
 pub use mesh::{Material, Mesh, Texture, Wrap};
+pub use read_file::ReadFile;
 pub use scene::{Instance, Scene};

@@ -1,7 +1,7 @@
 //! A technique with its settings as a person changes them one by one, and as a SPEC.
 
-use antumbra::techniques::spec::find;
 use antumbra::technique::settings::{Kind, Setting};
+use antumbra::techniques::spec::find;
 use antumbra::{Spec, TechniqueInfo};
 use serde_json::{Map, Value};
 

@@ -1,6 +1,7 @@
 //! Fitting the shadow frustum: at once for small scenes, in the background for large ones.
 
 use crate::job::{Job, Slice};
+use antumbra::input::frustum::FrustumFit;
 use antumbra::{RectLight, ShadowFrustum, View};
 use antumbra_scene::{Instance, Scene};
 
@@ -50,9 +51,9 @@ impl Fitter {
             return Some(frustum);
         }
         self.job = Some(Job::start("Fitting the shadow map", wake, move |_| async move {
-            let mut slice = Slice::default();
-            let pause = &mut async || slice.breathe().await;
-            let frustum = ShadowFrustum::fit_with_pauses(&scene, &what.0, pause).await;
+            let mut fit = FrustumFit::new(&scene, &what.0);
+            Slice::default().run(&mut fit, || true).await;
+            let frustum = fit.finish();
             (scene, what, frustum)
         }));
         None

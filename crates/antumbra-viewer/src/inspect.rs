@@ -2,8 +2,8 @@
 
 use crate::readback::Readback;
 use antumbra::Gpu;
-use antumbra::gpu::texture::{Texture, TextureDescription};
 use antumbra::gpu::debug_view::{DebugContent, DebugLayout, DebugView};
+use antumbra::gpu::texture::{Texture, TextureDescription};
 
 /// Pixels a side of what is shown.
 const SIDE: u32 = 512;

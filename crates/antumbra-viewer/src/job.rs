@@ -102,6 +102,18 @@ impl Default for Slice {
 }
 
 impl Slice {
+    /// Runs work that comes in pieces to its end, with frames in between; false if it is given up because `is_wanted` says
+    /// so.
+    pub async fn run(&mut self, pieces: &mut impl Iterator<Item = ()>, is_wanted: impl Fn() -> bool) -> bool {
+        while pieces.next().is_some() {
+            self.breathe().await;
+            if !is_wanted() {
+                return false;
+            }
+        }
+        true
+    }
+
     /// To be called every few milliseconds: gives way to the frame once the slice is used up. On a thread of its own
     /// the work goes right on.
     pub async fn breathe(&mut self) {

@@ -2,10 +2,10 @@
 
 use crate::fitter::Fitter;
 use crate::show::{Show, Shown};
-use antumbra::gpu::timer::PassTime;
 use antumbra::gpu::recorder::Recorder;
 use antumbra::gpu::resources::Resources;
 use antumbra::gpu::texture::{Texture, TextureDescription};
+use antumbra::gpu::timer::PassTime;
 use antumbra::input::casters::Role;
 use antumbra::passes::pixels::geometry_buffer::GeometryBuffer;
 use antumbra::passes::pixels::shading::{image_texture, shade};
@@ -157,9 +157,8 @@ pub struct Half {
     resources: Resources,
 }
 
-const VALUES: wgpu::TextureUsages = wgpu::TextureUsages::STORAGE_BINDING
-    .union(wgpu::TextureUsages::COPY_SRC)
-    .union(wgpu::TextureUsages::COPY_DST);
+const VALUES: wgpu::TextureUsages =
+    wgpu::TextureUsages::STORAGE_BINDING.union(wgpu::TextureUsages::COPY_SRC).union(wgpu::TextureUsages::COPY_DST);
 
 impl Canvas {
     /// Empty pictures.

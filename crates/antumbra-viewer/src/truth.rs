@@ -2,7 +2,7 @@
 
 use crate::here;
 use crate::job::{Died, Slice};
-use antumbra_reference::{Pixel, Settings, Tracer, View};
+use antumbra_reference::{Pixel, Settings, Tracer, TracerBuild, View};
 use antumbra_scene::{Camera, RectLight, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
@@ -157,14 +157,14 @@ impl Lazy {
         }
         while self.tracer.get().is_none() {
             if !self.begun.swap(true, Ordering::Relaxed) {
-                let pause = &mut async || {
-                    slice.breathe().await;
-                    is_wanted()
-                };
-                let built = Tracer::with_pauses(&self.scene, pause).await;
+                let mut build = TracerBuild::new(&self.scene);
+                let is_whole = slice.run(&mut build, &is_wanted).await;
                 self.begun.store(false, Ordering::Relaxed);
+                if !is_whole {
+                    return None;
+                }
                 // Nobody else builds it meanwhile.
-                let _ = self.tracer.set(built?);
+                let _ = self.tracer.set(build.finish());
             }
             here::yield_to_frame().await;
         }

@@ -3,7 +3,7 @@
 //!
 //!     cargo run --example bring_your_own_renderer -- backprojection shadow.ppm
 
-use antumbra::input::casters::{MeshBuffers, Indices, Role, Transforms};
+use antumbra::input::casters::{Indices, MeshBuffers, Role, Transforms};
 use antumbra::{Aabb, Casters, Frame, FrameDescriptor, Gpu, RectLight, ShadowFrustum, Shadows, View};
 use glam::{Mat4, Quat, Vec2, Vec3};
 use std::{error::Error, sync::Arc};
@@ -107,14 +107,17 @@ pub async fn render(technique: &str) -> Result<(Vec<f32>, Vec<u8>), Box<dyn Erro
         mask: None,
     };
     let casters = Arc::new(Casters::from_buffers(&gpu, &[mesh])?);
-    let mut frame = Frame::new(&gpu, &FrameDescriptor {
-        view: view(),
-        light: light(),
-        casters: &casters,
-        depth: &host.depth,
-        normals: &host.normals,
-        visibility: &host.visibility.create_view(&Default::default()),
-    })?;
+    let mut frame = Frame::new(
+        &gpu,
+        &FrameDescriptor {
+            view: view(),
+            light: light(),
+            casters: &casters,
+            depth: &host.depth,
+            normals: &host.normals,
+            visibility: &host.visibility.create_view(&Default::default()),
+        },
+    )?;
     // Typed settings where the technique is known: `Shadows::new(Pcss::make(&gpu, PcssSettings::default())?)`.
     let mut shadows = Shadows::from_spec(&gpu, &technique.parse()?)?;
     // ---- each frame ----

@@ -7,12 +7,11 @@ use crate::gpu::resources::{Resources, buffer_of};
 use crate::gpu::texture::{Texture, TextureDescription};
 use crate::gpu::timer::Timer;
 use crate::input::casters::{BatchLayout, Casters, CastersBuilder, Role, clusters_of};
-use crate::input::classification::roles_with_pauses;
+use crate::input::classification::Classification;
 use crate::input::frame::{Frame, FrameDescriptor, View};
 use crate::input::frustum::ShadowFrustum;
 use crate::passes::pixels::geometry_buffer::GeometryBuffer;
 use crate::passes::pixels::shading;
-use antumbra_scene::slices::{RUN, at_once};
 use antumbra_scene::{Aabb, Instance, Material, Mesh, Scene, Wrap};
 use glam::{Mat4, Vec3};
 use std::sync::Arc;
@@ -91,7 +90,7 @@ pub fn upload(gpu: &Gpu, scene: &Scene) -> Result<Casters, Error> {
     Ok(Placed::upload(gpu, scene)?.casters)
 }
 
-/// What is worked out of a scene before its triangles go to the GPU.
+/// A scene prepared for the GPU: roles of its instances, triangles in the order of their clusters.
 pub struct Arranged {
     roles: Vec<Role>,
     /// For each mesh its triangles in the order of their clusters.
@@ -101,28 +100,50 @@ pub struct Arranged {
 }
 
 impl Arranged {
-    /// Works it out: about half a microsecond a triangle.
+    /// Prepares a scene: about half a microsecond per triangle.
     pub fn of(scene: &Scene) -> Arranged {
-        at_once(Arranged::with_pauses(scene, &mut async || ()))
+        let mut arrangement = Arrangement::new(scene);
+        arrangement.by_ref().for_each(drop);
+        arrangement.finish()
+    }
+}
+
+/// [`Arranged::of`] piece by piece, for programs with one thread: an iterator whose every step takes some milliseconds,
+/// or as long as it takes to sort the largest mesh.
+pub struct Arrangement<'a> {
+    scene: &'a Scene,
+    classification: Classification<'a>,
+    triangles: Vec<Vec<[u32; 3]>>,
+}
+
+impl<'a> Arrangement<'a> {
+    /// Begins to prepare.
+    pub fn new(scene: &'a Scene) -> Arrangement<'a> {
+        Arrangement { scene, classification: Classification::new(scene), triangles: Vec::new() }
     }
 
-    /// The same for programs that must do other things in between: after every few milliseconds it waits for `pause`.
-    pub async fn with_pauses(scene: &Scene, pause: &mut impl AsyncFnMut()) -> Arranged {
-        let roles = roles_with_pauses(scene, pause).await;
-        let mut triangles = Vec::with_capacity(scene.meshes.len());
-        for mesh in &scene.meshes {
-            triangles.push(clustered(mesh, pause).await);
-        }
-        let mut occluder_bounds = Aabb::EMPTY;
-        for (instance, _) in scene.instances.iter().zip(&roles).filter(|(_, role)| **role == Role::Caster) {
-            let mesh = &scene.meshes[instance.mesh];
-            for run in mesh.indices.chunks(3 * RUN) {
-                let place = |&k: &u32| instance.world_from_object.transform_point3(mesh.positions[k as usize]);
-                occluder_bounds = occluder_bounds.union(&Aabb::of_points(run.iter().map(place)));
-                pause().await;
-            }
-        }
-        Arranged { roles, triangles, occluder_bounds }
+    /// The prepared scene, once the iterator has ended.
+    pub fn finish(self) -> Arranged {
+        let roles = self.classification.finish();
+        let casters = self.scene.instances.iter().zip(&roles).filter(|(_, role)| **role == Role::Caster);
+        let occluder_bounds = casters.fold(Aabb::EMPTY, |bounds, (instance, _)| {
+            let mesh = &self.scene.meshes[instance.mesh];
+            let corner = |&i: &u32| instance.world_from_object.transform_point3(mesh.positions[i as usize]);
+            bounds.union(&Aabb::of_points(mesh.indices.iter().map(corner)))
+        });
+        Arranged { roles, triangles: self.triangles, occluder_bounds }
+    }
+}
+
+impl Iterator for Arrangement<'_> {
+    type Item = ();
+
+    fn next(&mut self) -> Option<()> {
+        self.classification.next().or_else(|| {
+            let mesh = self.scene.meshes.get(self.triangles.len())?;
+            self.triangles.push(clustered(mesh));
+            Some(())
+        })
     }
 }
 
@@ -282,7 +303,7 @@ fn push_vertices(words: &mut Vec<f32>, mesh: &Mesh, with_uv: bool) {
 }
 
 /// A mesh's triangles along a space-filling curve, so that every run of them is a compact cluster.
-async fn clustered(mesh: &Mesh, pause: &mut impl AsyncFnMut()) -> Vec<[u32; 3]> {
+fn clustered(mesh: &Mesh) -> Vec<[u32; 3]> {
     let bounds = mesh.bounds();
     let scale = Vec3::splat(1023.0) / bounds.size().max(Vec3::splat(1e-20));
     let spread = |v: f32| (0..10).fold(0u32, |bits, i| bits | ((v as u32 >> i & 1) << (3 * i)));
@@ -291,13 +312,8 @@ async fn clustered(mesh: &Mesh, pause: &mut impl AsyncFnMut()) -> Vec<[u32; 3]> 
         let cell = (center - bounds.min) * scale;
         (spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2, [t[0], t[1], t[2]])
     };
-    let mut list: Vec<(u32, [u32; 3])> = Vec::with_capacity(mesh.triangle_count());
-    for run in mesh.indices.chunks(3 * RUN) {
-        list.extend(run.chunks_exact(3).map(keyed));
-        pause().await;
-    }
+    let mut list: Vec<(u32, [u32; 3])> = mesh.indices.chunks_exact(3).map(keyed).collect();
     list.sort_by_key(|(key, _)| *key);
-    pause().await;
     list.into_iter().map(|(_, t)| t).collect()
 }
 

@@ -5,7 +5,7 @@ mod host;
 
 mod common;
 
-use antumbra::input::casters::{MeshBuffers, Indices, Mask};
+use antumbra::input::casters::{Indices, Mask, MeshBuffers};
 use antumbra::passes::maps::depth_map::DepthMap;
 use antumbra::{Aabb, Casters, Error};
 use antumbra_reference::{Ray, Tracer};

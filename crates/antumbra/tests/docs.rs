@@ -69,6 +69,10 @@ fn every_technique_has_a_page_whose_settings_are_those_of_the_code() {
 fn the_list_of_pages_names_every_technique() {
     let list = std::fs::read_to_string(folder().join("README.md")).expect("docs/techniques/README.md");
     for info in TECHNIQUES {
-        assert!(list.contains(&format!("]({}.md)", info.name)), "docs/techniques/README.md does not list {}", info.name);
+        assert!(
+            list.contains(&format!("]({}.md)", info.name)),
+            "docs/techniques/README.md does not list {}",
+            info.name
+        );
     }
 }

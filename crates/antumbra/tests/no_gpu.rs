@@ -3,11 +3,11 @@
 
 mod common;
 
+use antumbra::passes::pixels::geometry_buffer::GeometryBuffer;
 use antumbra::scene::{upload, visibility};
 use antumbra::technique::settings::{Kind, Setting};
 use antumbra::techniques::TECHNIQUES;
 use antumbra::{Frame, FrameDescriptor, Gpu, ShadowFrustum, Shadows, Spec, View};
-use antumbra::passes::pixels::geometry_buffer::GeometryBuffer;
 use pollster::block_on;
 use std::sync::{Arc, LazyLock};
 
@@ -94,7 +94,8 @@ fn a_frame_like_the_last_one_makes_no_resource_and_no_bind_group() {
     let frame = frame();
     for info in TECHNIQUES {
         let text = &variants(info.name, info.settings)[0];
-        let mut shadows = Shadows::from_spec(&GPU, &text.parse().expect("a variant")).unwrap_or_else(|e| panic!("{text}: {e}"));
+        let mut shadows =
+            Shadows::from_spec(&GPU, &text.parse().expect("a variant")).unwrap_or_else(|e| panic!("{text}: {e}"));
         // Counts come back after a frame or two, and lists grow by them.
         (0..4).for_each(|_| record(&mut shadows, &frame, text));
         let made = shadows.resources_made();

@@ -1,39 +1,83 @@
-//! Who casts on whom, for techniques that part a scene into occluders and receivers.
+//! Classification of instances into occluders and receivers, for techniques that need it.
 
-use crate::input::casters::Role;
-use crate::input::light_grid::{Cells, clipped, each_triangle, plane_of};
-use antumbra_scene::{Scene, slices::at_once};
+use super::casters::Role;
+use super::light_grid::{LightGrid, Stages, clipped, plane_of};
+use antumbra_scene::Scene;
 use glam::{Vec2, Vec3};
 
-/// An occluder must be nearer to the light than what it is above by this part of its distance.
+/// An occluder is nearer to the light than the surface below it by at least this fraction of its distance.
 const SEPARATION: f32 = 1e-4;
 
-/// Tangents beyond this are not looked at: 160 degrees.
+/// Largest tangent that is considered: 160 degrees.
 const MAX_TAN: f32 = 5.67;
 
-/// The role of each instance: what says that it only receives does; the ground and all else that is above no surface of
-/// another instance, seen from the light's centre, is [`Role::Ground`]; the rest casts.
+/// The role of each instance: receivers that the scene names; [`Role::Ground`] for the ground and other instances that
+/// are above no surface of another instance, seen from the light's centre; casters.
 pub fn roles(scene: &Scene) -> Vec<Role> {
-    at_once(roles_with_pauses(scene, &mut async || ()))
+    let mut classification = Classification::new(scene);
+    classification.by_ref().for_each(drop);
+    classification.finish()
 }
 
-/// The same with a pause after every few thousand triangles.
-pub(crate) async fn roles_with_pauses(scene: &Scene, pause: &mut impl AsyncFnMut()) -> Vec<Role> {
-    let deepest = TwoDeepest::of(scene, pause).await;
-    let mut casts = vec![false; scene.instances.len()];
-    let look = |corners: [Vec3; 3], instance: usize| {
-        casts[instance] = casts[instance] || deepest.is_above_another(corners, instance);
-    };
-    each_triangle(scene, look, pause).await;
-    let role = |(instance, casts): (&antumbra_scene::Instance, bool)| match (instance.receiver_only, casts) {
-        (true, _) => Role::Receiver,
-        (false, false) => Role::Ground,
-        (false, true) => Role::Caster,
-    };
-    scene.instances.iter().zip(casts).map(role).collect()
+/// [`roles`] piece by piece, for programs with one thread: an iterator whose every step takes some milliseconds.
+pub struct Classification<'a> {
+    scene: &'a Scene,
+    stages: Stages<'a>,
+    /// Range of the tangents of all surfaces.
+    range: [Vec2; 2],
+    deepest: Option<TwoDeepest>,
+    casts: Vec<bool>,
 }
 
-/// A surface in a cell: its plane, and whose it is.
+impl<'a> Classification<'a> {
+    /// Begins to classify.
+    pub fn new(scene: &'a Scene) -> Classification<'a> {
+        let range = [Vec2::splat(MAX_TAN), Vec2::splat(-MAX_TAN)];
+        let casts = vec![false; scene.instances.len()];
+        Classification { scene, stages: Stages::new(scene, 3), range, deepest: None, casts }
+    }
+
+    /// The roles, once the iterator has ended.
+    pub fn finish(self) -> Vec<Role> {
+        let role = |(instance, casts): (&antumbra_scene::Instance, bool)| match (instance.receiver_only, casts) {
+            (true, _) => Role::Receiver,
+            (false, false) => Role::Ground,
+            (false, true) => Role::Caster,
+        };
+        self.scene.instances.iter().zip(self.casts).map(role).collect()
+    }
+}
+
+impl Iterator for Classification<'_> {
+    type Item = ();
+
+    fn next(&mut self) -> Option<()> {
+        let (stage, run) = self.stages.next()?;
+        let mut triangles = run.in_light_space();
+        match stage {
+            0 => {
+                let [low, high] = &mut self.range;
+                for c in triangles.flatten().filter(|c| c.z > 0.0) {
+                    let t = (c.truncate() / c.z).clamp(Vec2::splat(-MAX_TAN), Vec2::splat(MAX_TAN));
+                    (*low, *high) = (low.min(t), high.max(t));
+                }
+            }
+            1 => {
+                let [low, high] = self.range;
+                let deepest = self.deepest.get_or_insert_with(|| TwoDeepest::over(low, high.max(low)));
+                triangles.for_each(|corners| deepest.add(corners, run.instance));
+            }
+            _ => {
+                let casts = &mut self.casts[run.instance];
+                let deepest = self.deepest.as_ref()?;
+                *casts = *casts || triangles.any(|corners| deepest.is_above_another(corners, run.instance));
+            }
+        }
+        Some(())
+    }
+}
+
+/// A surface in a cell: its plane and its instance.
 #[derive(Clone, Copy)]
 struct Surface {
     plane: Vec3,
@@ -49,30 +93,20 @@ impl Surface {
 
 /// For each cell of the map the surface that is farthest from the light, and the farthest of any other instance.
 struct TwoDeepest {
-    cells: Cells,
+    cells: LightGrid,
     surfaces: Vec<[Surface; 2]>,
 }
 
 impl TwoDeepest {
-    async fn of(scene: &Scene, pause: &mut impl AsyncFnMut()) -> TwoDeepest {
-        let (mut low, mut high) = (Vec2::splat(MAX_TAN), Vec2::splat(-MAX_TAN));
-        let widen = |corners: [Vec3; 3], _| {
-            for c in corners.iter().filter(|c| c.z > 0.0) {
-                let t = (c.truncate() / c.z).clamp(Vec2::splat(-MAX_TAN), Vec2::splat(MAX_TAN));
-                (low, high) = (low.min(t), high.max(t));
-            }
-        };
-        each_triangle(scene, widen, pause).await;
+    fn over(low: Vec2, high: Vec2) -> TwoDeepest {
         let nothing = Surface { plane: Vec3::new(0.0, 0.0, f32::INFINITY), instance: usize::MAX };
-        let mut two = TwoDeepest { cells: Cells::over(low, high.max(low)), surfaces: vec![[nothing; 2]; Cells::COUNT] };
-        each_triangle(scene, |corners, instance| two.add(corners, instance), pause).await;
-        two
+        TwoDeepest { cells: LightGrid::over(low, high), surfaces: vec![[nothing; 2]; LightGrid::COUNT] }
     }
 
     fn add(&mut self, corners: [Vec3; 3], instance: usize) {
         let Some(plane) = plane_of(&corners) else { return };
         let (cells, new) = (self.cells, Surface { plane, instance });
-        cells.for_each(&clipped(&corners, &cells.rim()), |cell, t| {
+        cells.for_each(&clipped(&corners, &cells.border()), |cell, t| {
             let [first, second] = &mut self.surfaces[cell];
             if first.instance == instance {
                 *first = if new.q(t) < first.q(t) { new } else { *first };
@@ -91,7 +125,7 @@ impl TwoDeepest {
             let other = if first.instance == instance { second } else { first }.q(t);
             other.is_finite() && q > other.max(0.0) * (1.0 + SEPARATION)
         };
-        let polygon = clipped(&corners, &self.cells.rim());
+        let polygon = clipped(&corners, &self.cells.border());
         let mut above = polygon.iter().any(|c| {
             let t = c.truncate() / c.z;
             self.cells.around(t, 0).any(|cell| is_above(cell, t, 1.0 / c.z))

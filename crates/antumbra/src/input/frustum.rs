@@ -2,11 +2,11 @@
 //!
 //! All is measured in the map's own coordinates, tangents xy / z and inverse distance 1 / z, in which planes are affine.
 
+use super::light_grid::{LightGrid, Stages, clipped, plane_of};
 use crate::input::frame::View;
-use crate::input::light_grid::{Cells, clipped, each_triangle, each_world_triangle, plane_of};
 use crate::input::map_view::MapView;
-use antumbra_scene::{Aabb, RectLight, Scene, slices::at_once};
-use glam::{Vec2, Vec3};
+use antumbra_scene::{Aabb, RectLight, Scene};
+use glam::{Vec2, Vec3, Vec4};
 
 /// A symmetric frustum from the light's centre along its normal.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,39 +63,55 @@ impl ShadowFrustum {
         }
     }
 
-    /// The frustum that holds what casts shadows on what a view sees, and these shadows. Surfaces with nothing behind
-    /// them (the ground, as a rule) cast on nothing, so they do not widen it. Reads every triangle: a few hundred
-    /// milliseconds for millions of them, once for a scene whose light and view rest.
+    /// The frustum that holds all casters of shadows on surfaces that a view sees, and these shadows. Surfaces with
+    /// nothing behind them (the ground, as a rule) cast on nothing, so they do not widen it. Reads every triangle: a few
+    /// hundred milliseconds for millions of them, once for a scene whose light and view do not change.
     pub fn fit(scene: &Scene, view: &View) -> ShadowFrustum {
-        at_once(ShadowFrustum::fit_with_pauses(scene, view, &mut async || ()))
+        let mut fit = FrustumFit::new(scene, view);
+        fit.by_ref().for_each(drop);
+        fit.finish()
+    }
+}
+
+/// [`ShadowFrustum::fit`] piece by piece, for programs with one thread: an iterator whose every step takes some
+/// milliseconds.
+pub struct FrustumFit<'a> {
+    scene: &'a Scene,
+    view_planes: [Vec4; 6],
+    stages: Stages<'a>,
+    seen: Seen,
+    deepest: Option<DeepestSurface>,
+    /// Half the frustum that holds the casters so far.
+    casting: Vec2,
+}
+
+impl<'a> FrustumFit<'a> {
+    /// Begins to fit.
+    pub fn new(scene: &'a Scene, view: &View) -> FrustumFit<'a> {
+        // The light's own setting leaves nothing to fit.
+        let count = if scene.light.shadow_fov_deg.is_some() { 0 } else { 3 };
+        FrustumFit {
+            scene,
+            view_planes: MapView::new(view.clip_from_world()).planes_ws,
+            stages: Stages::new(scene, count),
+            seen: Seen::EMPTY,
+            deepest: None,
+            casting: Vec2::ZERO,
+        }
     }
 
-    /// The same for programs that must do other things in between: after every few milliseconds it waits for `pause`.
-    pub async fn fit_with_pauses(scene: &Scene, view: &View, pause: &mut impl AsyncFnMut()) -> ShadowFrustum {
-        let around = ShadowFrustum::around(&scene.light, &scene.bounds());
-        if scene.light.shadow_fov_deg.is_some() {
-            return around;
-        }
-        let seen = seen_range(scene, view, pause).await;
-        if seen.is_empty() {
-            return around;
-        }
-        let half_light = scene.light.size * 0.5;
-        let deepest = DeepestSurface::of(scene, &seen, pause).await;
-        let mut casting = Vec2::ZERO;
-        let cast = |corners: [Vec3; 3], instance: usize| {
-            if !scene.instances[instance].receiver_only {
-                casting = casting.max(deepest.reach_of_caster(corners, half_light));
-            }
-        };
-        each_triangle(scene, cast, pause).await;
+    /// The frustum, once the iterator has ended.
+    pub fn finish(self) -> ShadowFrustum {
+        let around = ShadowFrustum::around(&self.scene.light, &self.scene.bounds());
+        let Some(deepest) = self.deepest else { return around };
+        let (seen, half_light) = (self.seen, self.scene.light.size * 0.5);
         // Receivers beyond the reach of casters are lit, casters beyond that of receivers are of no use.
-        let tan = casting.min(seen.reach(half_light, deepest.nearest_q));
+        let tan = self.casting.min(seen.reach(half_light, deepest.nearest_q));
         if tan.max_element() <= 0.0 {
             return around;
         }
         let tan = tan.max(Vec2::splat(tan.max_element() / MAX_ELONGATION));
-        // What is nearer to the light than every caster takes no shadow.
+        // Surfaces nearer to the light than every caster take no shadow.
         let near_q = seen.near_q.min(deepest.nearest_q).max(seen.far_q);
         let [low, high] = around.receivers;
         ShadowFrustum {
@@ -104,6 +120,33 @@ impl ShadowFrustum {
             receivers: [(1.0 / near_q).clamp(low, high), (1.0 / seen.far_q).clamp(low, high)],
             nearest_caster: (1.0 / deepest.nearest_q).clamp(low, high),
         }
+    }
+}
+
+impl Iterator for FrustumFit<'_> {
+    type Item = ();
+
+    fn next(&mut self) -> Option<()> {
+        let (stage, run) = self.stages.next()?;
+        if stage > 0 && self.seen.is_empty() {
+            return None;
+        }
+        let receiver_only = self.scene.instances[run.instance].receiver_only;
+        let half_light = self.scene.light.size * 0.5;
+        match stage {
+            0 => run.in_world().for_each(|corners| self.seen.add(corners, &self.view_planes, &self.scene.light)),
+            1 => {
+                let deepest = self.deepest.get_or_insert_with(|| DeepestSurface::over(&self.seen));
+                run.in_light_space().for_each(|corners| deepest.add(corners, receiver_only));
+            }
+            _ if receiver_only => {}
+            _ => {
+                let Some(deepest) = &self.deepest else { return None };
+                let reach = run.in_light_space().map(|corners| deepest.reach_of_caster(corners, half_light));
+                self.casting = reach.fold(self.casting, Vec2::max);
+            }
+        }
+        Some(())
     }
 }
 
@@ -123,6 +166,22 @@ struct Seen {
 }
 
 impl Seen {
+    const EMPTY: Seen = Seen { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY, far_q: f32::INFINITY, near_q: 0.0 };
+
+    /// Adds the part of a triangle that lies within the view's frustum.
+    fn add(&mut self, corners: [Vec3; 3], view_planes: &[Vec4], light: &RectLight) {
+        for p in clipped(&corners, view_planes) {
+            let l = light.light_from_world(p);
+            if l.z > 0.0 {
+                let t = (l.truncate() / l.z).clamp(Vec2::splat(-MAX_TAN), Vec2::splat(MAX_TAN));
+                self.low = self.low.min(t);
+                self.high = self.high.max(t);
+                self.far_q = self.far_q.min(1.0 / l.z);
+                self.near_q = self.near_q.max(1.0 / l.z);
+            }
+        }
+    }
+
     fn is_empty(&self) -> bool {
         self.low.x > self.high.x
     }
@@ -133,29 +192,9 @@ impl Seen {
     }
 }
 
-/// Where the surfaces within the view's frustum lie in the map.
-async fn seen_range(scene: &Scene, view: &View, pause: &mut impl AsyncFnMut()) -> Seen {
-    let planes = MapView::new(view.clip_from_world()).planes_ws;
-    let mut seen = Seen { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY, far_q: f32::INFINITY, near_q: 0.0 };
-    let widen = |corners: [Vec3; 3], _| {
-        for p in clipped(&corners, &planes) {
-            let l = scene.light.light_from_world(p);
-            if l.z > 0.0 {
-                let t = (l.truncate() / l.z).clamp(Vec2::splat(-MAX_TAN), Vec2::splat(MAX_TAN));
-                seen.low = seen.low.min(t);
-                seen.high = seen.high.max(t);
-                seen.far_q = seen.far_q.min(1.0 / l.z);
-                seen.near_q = seen.near_q.max(1.0 / l.z);
-            }
-        }
-    };
-    each_world_triangle(scene, widen, pause).await;
-    seen
-}
-
 /// The surface that is farthest from the light, for each cell of the map: what is nearer casts on it.
 struct DeepestSurface {
-    cells: Cells,
+    cells: LightGrid,
     /// Inverse distance as an affine function of the tangent: (x, y, constant); infinite where there is nothing.
     planes: Vec<Vec3>,
     /// Of the nearest surface of all.
@@ -163,19 +202,16 @@ struct DeepestSurface {
 }
 
 impl DeepestSurface {
-    async fn of(scene: &Scene, seen: &Seen, pause: &mut impl AsyncFnMut()) -> DeepestSurface {
-        // Shadows reach visible surfaces from casters that project a little beside them.
-        let cells = Cells::over(seen.low, seen.high);
+    fn over(seen: &Seen) -> DeepestSurface {
         let nothing = Vec3::new(0.0, 0.0, f32::INFINITY);
-        let mut grid = DeepestSurface { cells, planes: vec![nothing; Cells::COUNT], nearest_q: 0.0 };
-        let add = |corners: [Vec3; 3], instance: usize| grid.add(corners, scene.instances[instance].receiver_only);
-        each_triangle(scene, add, pause).await;
-        grid
+        // Shadows reach visible surfaces from casters that project a little beside them.
+        let cells = LightGrid::over(seen.low, seen.high);
+        DeepestSurface { cells, planes: vec![nothing; LightGrid::COUNT], nearest_q: 0.0 }
     }
 
     fn add(&mut self, corners: [Vec3; 3], receiver_only: bool) {
         let Some(plane) = plane_of(&corners) else { return };
-        let polygon = clipped(&corners, &self.cells.rim());
+        let polygon = clipped(&corners, &self.cells.border());
         if !receiver_only {
             self.nearest_q = polygon.iter().fold(self.nearest_q, |q, c| q.max(1.0 / c.z));
         }
@@ -197,7 +233,7 @@ impl DeepestSurface {
                 reach = reach.max(t.abs() + half_light * (q - behind));
             }
         };
-        let polygon = clipped(&corners, &self.cells.rim());
+        let polygon = clipped(&corners, &self.cells.border());
         for c in &polygon {
             let t = c.truncate() / c.z;
             cast(t, 1.0 / c.z, self.deepest_q(t));

@@ -1,35 +1,32 @@
-//! A coarse grid over the part of a shadow map that surfaces take, for questions about a scene that are asked on the
-//! CPU.
+//! A coarse light-space grid over the part of a shadow map that surfaces take, for analysing a scene on the CPU.
 //!
-//! All is measured in the map's own coordinates, tangents xy / z and inverse distance 1 / z, in which planes are
-//! affine.
+//! Coordinates are the map's own, tangents xy / z and inverse distance 1 / z, in which planes are affine.
 
 use antumbra_scene::Scene;
-use antumbra_scene::slices::RUN;
 use glam::{Vec2, Vec3, Vec4};
 
-/// Cells a side.
+/// Cells per side.
 const SIDE: usize = 192;
 
-/// Where the cells lie.
+/// Position and size of the cells.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Cells {
+pub(crate) struct LightGrid {
     low: Vec2,
     cell: Vec2,
 }
 
-impl Cells {
-    /// How many there are.
+impl LightGrid {
+    /// Number of cells.
     pub const COUNT: usize = SIDE * SIDE;
 
     /// Cells over this range of tangents, and a little beyond.
-    pub fn over(low: Vec2, high: Vec2) -> Cells {
+    pub fn over(low: Vec2, high: Vec2) -> LightGrid {
         let margin = (high - low) * 0.02 + 1e-4;
-        Cells { low: low - margin, cell: (high - low + 2.0 * margin) / SIDE as f32 }
+        LightGrid { low: low - margin, cell: (high - low + 2.0 * margin) / SIDE as f32 }
     }
 
     /// Planes in light space around all cells, and a little in front of the light.
-    pub fn rim(&self) -> [Vec4; 5] {
+    pub fn border(&self) -> [Vec4; 5] {
         let high = self.low + self.cell * SIDE as f32;
         [
             Vec4::new(0.0, 0.0, 1.0, -1e-5),
@@ -56,7 +53,7 @@ impl Cells {
         }
     }
 
-    /// The cells that lie up to `reach` cells from a tangent's own; those that there are.
+    /// The cells up to `reach` cells away from that of a tangent, within the grid.
     pub fn around(&self, t: Vec2, reach: i32) -> impl Iterator<Item = usize> {
         let at = ((t - self.low) / self.cell).floor();
         let inside = move |v: f32, d: i32| Some(v as i32 + d).filter(|v| (0..SIDE as i32).contains(v));
@@ -66,46 +63,73 @@ impl Cells {
     }
 }
 
-/// Calls with the world-space corners of every triangle and the place of its instance, with a pause after every few
-/// thousand.
-pub(crate) async fn each_world_triangle(
-    scene: &Scene,
-    mut call: impl FnMut([Vec3; 3], usize),
-    pause: &mut impl AsyncFnMut(),
-) {
-    let mut moved = Vec::new();
-    for (place, instance) in scene.instances.iter().enumerate() {
-        let mesh = &scene.meshes[instance.mesh];
-        moved.clear();
-        moved.extend(mesh.positions.iter().map(|p| instance.world_from_object.transform_point3(*p)));
-        for run in mesh.indices.chunks(3 * RUN) {
-            for t in run.chunks_exact(3) {
-                call([t[0], t[1], t[2]].map(|i| moved[i as usize]), place);
-            }
-            pause().await;
-        }
+/// Triangles of a run: some milliseconds of work.
+const RUN: usize = 1 << 14;
+
+/// A run of triangles of one instance.
+pub(crate) struct Run<'a> {
+    scene: &'a Scene,
+    /// Index of the instance.
+    pub instance: usize,
+    indices: &'a [u32],
+}
+
+/// The triangles of all instances in runs, so that work over a large scene can be done piece by piece.
+pub(crate) fn runs(scene: &Scene) -> impl Iterator<Item = Run<'_>> {
+    scene.instances.iter().enumerate().flat_map(move |(index, instance)| {
+        let indices = &scene.meshes[instance.mesh].indices;
+        indices.chunks(3 * RUN).map(move |indices| Run { scene, instance: index, indices })
+    })
+}
+
+impl Run<'_> {
+    /// World-space corners.
+    pub fn in_world(&self) -> impl Iterator<Item = [Vec3; 3]> {
+        let instance = &self.scene.instances[self.instance];
+        let positions = &self.scene.meshes[instance.mesh].positions;
+        let corner = move |i: u32| instance.world_from_object.transform_point3(positions[i as usize]);
+        self.indices.chunks_exact(3).map(move |t| [t[0], t[1], t[2]].map(corner))
+    }
+
+    /// Corners in light space of the triangles that lie in front of the light.
+    pub fn in_light_space(&self) -> impl Iterator<Item = [Vec3; 3]> {
+        let center = self.scene.light.center;
+        let (right, up, forward) = self.scene.light.basis();
+        let to_light = move |p: Vec3| {
+            let d = p - center;
+            Vec3::new(d.dot(right), d.dot(up), d.dot(forward))
+        };
+        self.in_world().map(move |corners| corners.map(to_light)).filter(|corners| corners.iter().any(|c| c.z > 0.0))
     }
 }
 
-/// Calls with every triangle that lies in front of the light: three corners in light space, and its instance; with a pause
-/// after every few thousand.
-pub(crate) async fn each_triangle(
-    scene: &Scene,
-    mut call: impl FnMut([Vec3; 3], usize),
-    pause: &mut impl AsyncFnMut(),
-) {
-    let light = scene.light;
-    let (right, up, forward) = light.basis();
-    let towards_light = |corners: [Vec3; 3], instance: usize| {
-        let corners = corners.map(|p| {
-            let d = p - light.center;
-            Vec3::new(d.dot(right), d.dot(up), d.dot(forward))
-        });
-        if corners.iter().any(|c| c.z > 0.0) {
-            call(corners, instance);
+/// Work in stages, each of them over all runs of a scene's triangles.
+pub(crate) struct Stages<'a> {
+    scene: &'a Scene,
+    runs: Box<dyn Iterator<Item = Run<'a>> + 'a>,
+    stage: usize,
+    count: usize,
+}
+
+impl<'a> Stages<'a> {
+    pub fn new(scene: &'a Scene, count: usize) -> Stages<'a> {
+        Stages { scene, runs: Box::new(runs(scene)), stage: 0, count }
+    }
+}
+
+impl<'a> Iterator for Stages<'a> {
+    /// The stage, counted from 0, and the run that is next.
+    type Item = (usize, Run<'a>);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        while self.stage < self.count {
+            if let Some(run) = self.runs.next() {
+                return Some((self.stage, run));
+            }
+            (self.runs, self.stage) = (Box::new(runs(self.scene)), self.stage + 1);
         }
-    };
-    each_world_triangle(scene, towards_light, pause).await;
+        None
+    }
 }
 
 /// The corners of the part of a triangle that lies on the upper side of all planes [Sutherland, Hodgman 1974].

@@ -3,8 +3,8 @@
 use super::TECHNIQUES;
 use crate::error::{Error, SpecError};
 use crate::gpu::device::Gpu;
-use crate::technique::{Technique, TechniqueInfo};
 use crate::technique::settings::{nearest, parse_values};
+use crate::technique::{Technique, TechniqueInfo};
 use serde_json::{Map, Value};
 
 /// A technique with its settings, as on the command line: `name:key=value,key=value`.

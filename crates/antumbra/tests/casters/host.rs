@@ -2,7 +2,7 @@
 
 use crate::common::gpu;
 use antumbra::Aabb;
-use antumbra::input::casters::{MeshBuffers, Indices, Role, Transforms};
+use antumbra::input::casters::{Indices, MeshBuffers, Role, Transforms};
 use antumbra_scene::Scene;
 use glam::Mat4;
 use wgpu::util::DeviceExt;
