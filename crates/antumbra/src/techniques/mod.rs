@@ -5,7 +5,7 @@ use crate::technique::{TechniqueInfo, entry};
 // TODO(convert) pub mod alias_free;
 // TODO(convert) pub mod backprojection;
 // TODO(convert) pub mod light_sampling;
-// TODO(convert) pub mod moments;
+pub mod moments;
 pub mod pcss;
 // TODO(convert) pub mod pvssm;
 pub mod shadow_map;
@@ -19,14 +19,14 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<pcss::Pcss>(),
     entry::<pcss::SmoothPcss>(),
     // TODO(convert) entry::<ssm::Ssm>(),
-    // TODO(convert) entry::<moments::vsm::Vsm>(),
-    // TODO(convert) entry::<moments::evsm::Evsm>(),
-    // TODO(convert) entry::<moments::msm::Msm>(),
-    // TODO(convert) entry::<moments::esm::Esm>(),
-    // TODO(convert) entry::<moments::csm::Csm>(),
-    // TODO(convert) entry::<moments::savsm::Savsm>(),
-    // TODO(convert) entry::<moments::vssm::Vssm>(),
-    // TODO(convert) entry::<moments::cssm::Cssm>(),
+    entry::<moments::vsm::Vsm>(),
+    entry::<moments::evsm::Evsm>(),
+    entry::<moments::msm::Msm>(),
+    entry::<moments::esm::Esm>(),
+    entry::<moments::csm::Csm>(),
+    entry::<moments::savsm::Savsm>(),
+    entry::<moments::vssm::Vssm>(),
+    entry::<moments::cssm::Cssm>(),
     // TODO(convert) entry::<backprojection::Backprojection>(),
     // TODO(convert) entry::<backprojection::packet::Packet>(),
     // TODO(convert) entry::<pvssm::Pvssm>(),

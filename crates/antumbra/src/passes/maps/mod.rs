@@ -3,8 +3,8 @@
 // TODO(convert) pub mod depth_layers;
 pub mod depth_map;
 pub mod depth_pyramid;
-// TODO(convert) pub mod light_depth;
+pub mod light_depth;
 // TODO(convert) pub mod light_maps;
-// TODO(convert) pub mod moments;
+pub mod moments;
 // TODO(convert) pub mod patch_pyramid;
-// TODO(convert) pub mod summed_area;
+pub mod summed_area;

@@ -1,8 +1,8 @@
 //! Formats of a moment map's texels.
 
-use crate::gpu::shader::StorageFormat;
 use crate::error::Error;
 use crate::gpu::device::Gpu;
+use crate::gpu::shader::StorageFormat;
 
 crate::choices! {
     /// How a texel of a moment map is stored.

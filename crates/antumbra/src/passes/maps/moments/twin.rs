@@ -1,14 +1,14 @@
 //! What is stored of depths, filtered, and read as a bound: `passes/moments`, `shaders/chebyshev.wesl`,
 //! `shaders/hamburger.wesl`, `shaders/fourier.wesl`.
 
-use crate::testing::{Random, Worst, evaluate, gpu};
-use crate::input::frame::FrameUniform;
-use crate::passes::maps::moments::{BlurUniform, DepthWarp, TexelFormat, fourier};
+use crate::bindings;
+use crate::gpu::recorder::Recorder;
 use crate::gpu::recorder::Work;
 use crate::gpu::resources::{Texture, buffer_of, read_buffer, storage_buffer, uniform};
 use crate::gpu::shader::{HostStruct, ShaderKey};
-use crate::gpu::recorder::Recorder;
-use crate::bindings;
+use crate::input::frame::FrameUniform;
+use crate::passes::maps::moments::{BlurUniform, DepthWarp, TexelFormat, fourier};
+use crate::testing::{Random, Worst, evaluate, gpu};
 use glam::UVec2;
 use pollster::block_on;
 
@@ -62,8 +62,9 @@ fn bounds(format: TexelFormat, pairs: &[[f32; 2]]) -> Vec<f32> {
             .unwrap_or_else(|e| panic!("{e}"))
     };
     let (fill, look) = (pipeline(store, "fill"), pipeline(read, "look"));
-    let chain =
-        ShaderKey::new("passes::maps::moments::mip_chain").feature("split", format.is_split()).storing(format.storage());
+    let chain = ShaderKey::new("passes::maps::moments::mip_chain")
+        .feature("split", format.is_split())
+        .storing(format.storage());
     let chain = gpu.compute_pipeline(&chain, "reduce_level").unwrap_or_else(|e| panic!("{e}"));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut recorder = Recorder::new(gpu, &mut encoder);

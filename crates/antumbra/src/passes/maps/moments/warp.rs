@@ -1,8 +1,8 @@
 //! What the numbers of a moment map mean.
 
+use crate::gpu_struct;
 use crate::input::frame::Frame;
 use crate::input::frustum::ShadowFrustum;
-use crate::gpu_struct;
 use glam::Vec2;
 
 gpu_struct! {

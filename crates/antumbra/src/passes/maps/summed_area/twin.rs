@@ -1,16 +1,16 @@
 //! `passes/summed_area` and `shaders/summed_area.wesl`: means over boxes of a large map against double precision.
 
-use crate::testing::{Random, gpu};
+use crate::bindings;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::recorder::Work;
+use crate::gpu::resources::{buffer_of, read_buffer, storage_buffer, uniform};
+use crate::gpu::shader::{HostStruct, ShaderKey};
 use crate::input::frame::FrameUniform;
 use crate::passes::maps::light_depth::LightDepth;
 use crate::passes::maps::moments::{DepthWarp, Nearest};
 use crate::passes::maps::summed_area::{SummedArea, Sums, TableShape};
-use crate::gpu::recorder::Work;
-use crate::gpu::resources::{buffer_of, read_buffer, storage_buffer, uniform};
 use crate::scene::SceneRenderer;
-use crate::gpu::shader::{HostStruct, ShaderKey};
-use crate::gpu::recorder::Recorder;
-use crate::bindings;
+use crate::testing::{Random, gpu};
 use antumbra_scene::builtin;
 use pollster::block_on;
 

@@ -2,8 +2,8 @@
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat, fourier};
-use crate::technique::settings::Kind;
 use crate::technique::TechniqueAbout;
+use crate::technique::settings::Kind;
 
 crate::choices! {
     /// How sines and cosines are stored.
@@ -27,10 +27,10 @@ crate::prefilter_settings! {
     }
 }
 
-/// Shadow of the light's centre, filtered like a picture, whatever the number of surfaces.
+/// Shadow of the light's centre, prefiltered, whatever the number of surfaces.
 pub type Csm = Prefiltered<Convolution>;
 
-/// What [`Csm`] stores.
+/// Values that [`Csm`] stores.
 pub struct Convolution;
 
 impl Prefilter for Convolution {
@@ -39,7 +39,7 @@ impl Prefilter for Convolution {
         name: "csm",
         title: "Convolution shadow maps",
         source: "Annen 2007",
-        summary: "the comparison as a Fourier series, filtered like a picture; contact shadows fade",
+        summary: "the comparison as a Fourier series, prefiltered; contact shadows fade",
     };
     const WARP: &'static str = "techniques::moments::csm::warp";
 

@@ -3,13 +3,13 @@
 use super::summed::{Plan, Soft, SoftUniform, Summed};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat, fourier};
 use crate::passes::maps::summed_area::{Sums, TableShape};
-use crate::technique::settings::Kind;
 use crate::technique::TechniqueAbout;
+use crate::technique::settings::Kind;
 
 crate::settings! {
     /// Settings of [`Cssm`].
     pub struct CssmSettings {
-        /// Shadow map, texels a side; its tables take 32 bytes a texel for each term.
+        /// Shadow map, texels per side; its tables take 32 bytes per texel for each term.
         map: u32 = 512, Kind::Integer { min: 16, max: 8192 };
         /// Terms of the series.
         terms: u32 = 8, Kind::Integer { min: 1, max: 16 };
@@ -19,7 +19,7 @@ crate::settings! {
 /// Soft shadow of an area light by the comparison's Fourier series.
 pub type Cssm = Summed<ConvolutionSoft>;
 
-/// What [`Cssm`] stores and reads.
+/// Values that [`Cssm`] stores and reads.
 pub struct ConvolutionSoft;
 
 impl Soft for ConvolutionSoft {

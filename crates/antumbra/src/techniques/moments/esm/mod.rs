@@ -1,9 +1,9 @@
-//! Exponential shadow maps [Annen 2008, Salvi 2008]: one number a texel.
+//! Exponential shadow maps [Annen 2008, Salvi 2008]: one number per texel.
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
-use crate::technique::settings::Kind;
 use crate::technique::TechniqueAbout;
+use crate::technique::settings::Kind;
 use glam::Vec2;
 
 crate::choices! {
@@ -19,7 +19,7 @@ crate::choices! {
 crate::prefilter_settings! {
     /// Settings of [`Esm`].
     pub struct EsmSettings {
-        /// A 32-bit number a texel, or one of 16 bits.
+        /// A 32-bit number per texel, or one of 16 bits.
         format: EsmFormat = EsmFormat::R32Float, Kind::Choice { options: EsmFormat::OPTIONS };
         /// Exponent over the range of depths; 16 bits take no more than 20.
         exponent: f32 = 80.0, Kind::Number { min: 1.0, max: 160.0 };
@@ -29,10 +29,10 @@ crate::prefilter_settings! {
 /// Depths from -1/2 to 1/2 give e^-c/2 to e^c/2: numbers of 16 bits hold 6e-5 to 65504.
 const MOST_IN_16_BITS: f32 = 20.0;
 
-/// Shadow of the light's centre, filtered like a picture, by one number a texel.
+/// Shadow of the light's centre, prefiltered, by one number per texel.
 pub type Esm = Prefiltered<Exponential>;
 
-/// What [`Esm`] stores.
+/// Values that [`Esm`] stores.
 pub struct Exponential;
 
 impl Prefilter for Exponential {
@@ -41,7 +41,7 @@ impl Prefilter for Exponential {
         name: "esm",
         title: "Exponential shadow maps",
         source: "Annen 2008, Salvi 2008",
-        summary: "one exponential of depth, filtered like a picture; light bleeds where an occluder is close",
+        summary: "one exponential of depth, prefiltered; light bleeds where an occluder is close",
     };
     const WARP: &'static str = "techniques::moments::esm::warp";
 

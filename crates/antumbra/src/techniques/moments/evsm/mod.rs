@@ -2,8 +2,8 @@
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
-use crate::technique::settings::Kind;
 use crate::technique::TechniqueAbout;
+use crate::technique::settings::Kind;
 use glam::Vec2;
 
 crate::choices! {
@@ -23,7 +23,7 @@ crate::choices! {
 crate::prefilter_settings! {
     /// Settings of [`Evsm`].
     pub struct EvsmSettings {
-        /// Two numbers a texel (the positive warp) or four (the negative one too), of 32 or 16 bits.
+        /// Two numbers per texel (the positive warp) or four (the negative one too), of 32 or 16 bits.
         format: EvsmFormat = EvsmFormat::Rgba32Float, Kind::Choice { options: EvsmFormat::OPTIONS };
         /// Exponent of the warp over the range of depths; formats of 16 bits take no more than 9.
         exponent: f32 = 40.0, Kind::Number { min: 1.0, max: 80.0 };
@@ -35,10 +35,10 @@ crate::prefilter_settings! {
 /// The square of the warp over depths from -1/2 to 1/2 goes from e^-c to e^c: numbers of 16 bits hold 6e-5 to 65504.
 const MOST_IN_16_BITS: f32 = 9.0;
 
-/// Shadow of the light's centre, filtered like a picture, with less light bleeding than variance alone.
+/// Shadow of the light's centre, prefiltered, with less light bleeding than variance alone.
 pub type Evsm = Prefiltered<ExponentialVariance>;
 
-/// What [`Evsm`] stores.
+/// Values that [`Evsm`] stores.
 pub struct ExponentialVariance;
 
 impl Prefilter for ExponentialVariance {

@@ -2,8 +2,8 @@
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
-use crate::technique::settings::Kind;
 use crate::technique::TechniqueAbout;
+use crate::technique::settings::Kind;
 
 crate::choices! {
     /// How the four moments are stored.
@@ -18,17 +18,17 @@ crate::choices! {
 crate::prefilter_settings! {
     /// Settings of [`Msm`].
     pub struct MsmSettings {
-        /// Four 32-bit numbers a texel, or four 16-bit fractions in a basis that loses little by rounding.
+        /// Four 32-bit numbers per texel, or four 16-bit fractions in a basis that loses little by rounding.
         format: MsmFormat = MsmFormat::Rgba32Float, Kind::Choice { options: MsmFormat::OPTIONS };
         /// Against light bleeding: so much of the bound becomes 0 and the rest is stretched; widens shadows.
         bleeding: f32 = 0.0, Kind::Number { min: 0.0, max: 0.95 };
     }
 }
 
-/// Shadow of the light's centre, filtered like a picture, that keeps two surfaces apart.
+/// Shadow of the light's centre, prefiltered, that keeps two surfaces apart.
 pub type Msm = Prefiltered<Moments>;
 
-/// What [`Msm`] stores.
+/// Values that [`Msm`] stores.
 pub struct Moments;
 
 impl Prefilter for Moments {
@@ -37,7 +37,7 @@ impl Prefilter for Moments {
         name: "msm",
         title: "Moment shadow maps",
         source: "Peters, Klein 2015",
-        summary: "four moments of depth, filtered like a picture; light bleeds where three surfaces overlap",
+        summary: "four moments of depth, prefiltered; light bleeds where three surfaces overlap",
     };
     const WARP: &'static str = "techniques::moments::msm::warp";
 

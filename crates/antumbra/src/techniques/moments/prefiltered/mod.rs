@@ -1,39 +1,38 @@
-//! The skeleton of techniques whose shadow map can be filtered like a picture: what is stored of a texel's depths is
-//! blurred, given a mip chain, and looked up once a pixel with trilinear and anisotropic filtering. A technique says what
-//! is stored and how the filtered values are read, in a module `warp.wesl` of two functions.
+//! Prefiltered shadow maps: the values stored of a texel's depths are blurred, given a mip chain, and looked up once per
+//! pixel with trilinear and anisotropic filtering. A technique defines the stored values and how filtered ones are read, in
+//! a module `warp.wesl` of two functions.
 
-use crate::input::frame::FrameUniform;
-use crate::passes::maps::moments::{DepthWarp, MomentMap, MomentShape, Nearest, TexelFormat};
+use crate::error::Error;
+use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::uniform;
-use crate::technique::settings::Settings;
 use crate::gpu::shader::ShaderKey;
-use crate::technique::{TechniqueAbout, TechniqueFactory, InnerPicture, Memory, Technique};
-use crate::error::Error;
 use crate::input::frame::Frame;
-use crate::gpu::device::Gpu;
+use crate::passes::maps::moments::{DepthWarp, MomentMap, MomentShape, Nearest, TexelFormat};
+use crate::technique::settings::Settings;
+use crate::technique::{Technique, TechniqueAbout, TechniqueFactory};
 use crate::{bindings, gpu_struct};
 use glam::Vec2;
 use std::{marker::PhantomData, sync::Arc};
 
-/// What distinguishes one prefiltered technique from another.
+/// The differences between prefiltered techniques.
 pub trait Prefilter: 'static {
     /// Its settings, declared by [`prefilter_settings!`](crate::prefilter_settings!).
     type Settings: Settings + HasFiltering;
-    /// What it says of itself.
+    /// Its description.
     const ABOUT: TechniqueAbout;
     /// Path of its `warp.wesl` below `src`.
     const WARP: &'static str;
 
-    /// What is stored for these settings.
+    /// The stored values for these settings.
     fn stored(settings: &Self::Settings) -> Stored;
 }
 
-/// What a technique stores of each texel.
+/// The values that a technique stores of each texel.
 #[derive(Clone, Copy, Debug)]
 pub struct Stored {
-    /// A texel of a layer.
+    /// Format of a layer.
     pub format: TexelFormat,
     /// A format of the technique that every adapter stores.
     pub portable: &'static str,
@@ -44,9 +43,9 @@ pub struct Stored {
 }
 
 crate::choices! {
-    /// Who interpolates.
+    /// Where filtering is done.
     pub enum Lookup {
-        /// The sampler where the adapter filters as it is asked to, and the shader elsewhere.
+        /// The sampler where the adapter can, the shader elsewhere.
         Hardware = "hardware",
         /// The shader.
         Shader = "shader",
@@ -56,9 +55,9 @@ crate::choices! {
 /// The settings that every prefiltered technique has.
 #[derive(Clone, Copy, Debug)]
 pub struct Filtering {
-    /// Texels a side.
+    /// Texels per side.
     pub map: u32,
-    /// Four depths a texel.
+    /// Four depths per texel.
     pub multisample: bool,
     /// Width of the Gaussian, texels.
     pub blur: u32,
@@ -66,13 +65,13 @@ pub struct Filtering {
     pub mips: bool,
     /// Greatest ratio of a footprint's axes.
     pub anisotropy: u32,
-    /// Who interpolates.
+    /// Where filtering is done.
     pub lookup: Lookup,
 }
 
 /// Settings with those of filtering among them.
 pub trait HasFiltering {
-    /// These.
+    /// The shared settings.
     fn filtering(&self) -> Filtering;
 }
 
@@ -84,9 +83,9 @@ macro_rules! prefilter_settings {
         $crate::settings! {
             $(#[$meta])*
             $vis struct $name {
-                /// Shadow map, texels a side.
+                /// Shadow map, texels per side.
                 map: u32 = 2048, $crate::technique::settings::Kind::Integer { min: 16, max: 16384 };
-                /// Draw four depths a texel and average what is stored of them.
+                /// Four depths per texel, whose stored values are averaged.
                 multisample: bool = false, $crate::technique::settings::Kind::Toggle;
                 /// Width of a Gaussian blur of the map in texels, an even one counting as the next odd one; 1 is none.
                 blur: u32 = 3, $crate::technique::settings::Kind::Integer { min: 1, max: 63 };
@@ -94,7 +93,7 @@ macro_rules! prefilter_settings {
                 mips: bool = true, $crate::technique::settings::Kind::Toggle;
                 /// Greatest anisotropy of the filter; 1 is none, and so is any without a mip chain.
                 anisotropy: u32 = 16, $crate::technique::settings::Kind::Integer { min: 1, max: 16 };
-                /// Filtered by the sampler (by the shader where the adapter cannot as it is asked to), or by the shader.
+                /// Filtering by the sampler (by the shader where the adapter cannot), or by the shader.
                 lookup: $crate::techniques::moments::prefiltered::Lookup = $crate::techniques::moments::prefiltered::Lookup::Hardware,
                     $crate::technique::settings::Kind::Choice { options: $crate::techniques::moments::prefiltered::Lookup::OPTIONS };
                 $($own)*
@@ -117,9 +116,9 @@ macro_rules! prefilter_settings {
 }
 
 gpu_struct! {
-    /// How a moment map is filtered; see `shaders/moment_map.wesl`.
+    /// Filtering of a moment map; see `shaders/moment_map.wesl`.
     pub(crate) struct FilterUniform {
-        /// Texels a side.
+        /// Texels per side.
         size: Vec2,
         /// Greatest ratio of a footprint's axes.
         anisotropy: f32,
@@ -130,25 +129,25 @@ gpu_struct! {
     }
 }
 
-/// A technique that looks a prefiltered map up once a pixel.
+/// A technique with one lookup of a prefiltered map per pixel.
 pub struct Prefiltered<P: Prefilter> {
     stored: Stored,
     shape: MomentShape,
     lookup: Arc<ComputePipeline>,
     filtering: wgpu::Buffer,
     trilinear: wgpu::Sampler,
-    map: Option<MomentMap>,
     technique: PhantomData<fn() -> P>,
 }
 
 impl<P: Prefilter> TechniqueFactory for Prefiltered<P> {
     type Settings = P::Settings;
+    type Technique = Prefiltered<P>;
     const ABOUT: TechniqueAbout = P::ABOUT;
 
-    fn make(gpu: &Gpu, settings: P::Settings) -> Result<Self, Error> {
+    fn make(gpu: &Gpu, settings: P::Settings) -> Result<Prefiltered<P>, Error> {
         let (filtering, stored) = (settings.filtering(), P::stored(&settings));
         stored.format.check(gpu, stored.portable)?;
-        // Without a mip chain there is nothing that several lookups could be spared by.
+        // Without a mip chain, anisotropic lookups save nothing.
         let anisotropy = if filtering.mips { filtering.anisotropy } else { 1 };
         let filtered = stored.format.is_filtered(gpu) && (anisotropy == 1 || gpu.capabilities.anisotropic_filtering);
         let hardware = filtering.lookup == Lookup::Hardware && filtered;
@@ -177,7 +176,6 @@ impl<P: Prefilter> TechniqueFactory for Prefiltered<P> {
             trilinear: sampler(gpu, anisotropy as u16, last_level),
             stored,
             shape,
-            map: None,
             technique: PhantomData,
         })
     }
@@ -197,24 +195,14 @@ fn sampler(gpu: &Gpu, anisotropy: u16, last_level: f32) -> wgpu::Sampler {
 
 impl<P: Prefilter> Technique for Prefiltered<P> {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
-        let map = MomentMap::ensure(&mut self.map, recorder.gpu, self.shape, &frame.casters)?;
-        map.record(recorder, frame, P::WARP, self.stored.warp.over(frame, Nearest::Receiver))?;
-        let set = frame.bindings(bindings! {
+        let warp = self.stored.warp.over(frame, Nearest::Receiver);
+        let map = MomentMap::record(recorder, frame, self.shape, P::WARP, warp)?;
+        let own = bindings! {
             warp: &map.warp,
             moments: &map.texture,
             filtering: &self.filtering,
             trilinear: &self.trilinear,
-        });
-        let [width, height] = frame.size;
-        recorder.compute("filtered lookup", &self.lookup, &set, Work::Threads([width, height, 1]));
-        Ok(())
-    }
-
-    fn inner_pictures(&self) -> Vec<InnerPicture> {
-        self.map.iter().flat_map(MomentMap::inner_pictures).collect()
-    }
-
-    fn memory(&self) -> Vec<Memory> {
-        self.map.iter().flat_map(MomentMap::memory).collect()
+        };
+        recorder.compute("filtered lookup", &self.lookup, &[&frame.bindings(), own], Work::Pixels(frame.size))
     }
 }

@@ -4,17 +4,17 @@
 use super::summed::{Plan, Soft, SoftUniform, Summed};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
 use crate::passes::maps::summed_area::{Sums, TableShape};
-use crate::technique::settings::Kind;
 use crate::technique::TechniqueAbout;
+use crate::technique::settings::Kind;
 
 crate::settings! {
     /// Settings of [`Savsm`].
     pub struct SavsmSettings {
-        /// Shadow map, texels a side; its tables take 64 bytes a texel.
+        /// Shadow map, texels per side; its tables take 64 bytes per texel.
         map: u32 = 1024, Kind::Integer { min: 16, max: 16384 };
         /// Sums of 32 bits, of 32 bits less their mean, or of 64 bits.
         format: Sums = Sums::Fixed, Kind::Choice { options: Sums::OPTIONS };
-        /// Widest blocker search, in nodes of the depth pyramid a side.
+        /// Widest blocker search, in nodes of the depth pyramid per side.
         search: u32 = 16, Kind::Integer { min: 2, max: 256 };
     }
 }
@@ -22,7 +22,7 @@ crate::settings! {
 /// Soft shadow of an area light by the variance of depth.
 pub type Savsm = Summed<SummedVariance>;
 
-/// What [`Savsm`] stores and reads.
+/// Values that [`Savsm`] stores and reads.
 pub struct SummedVariance;
 
 impl Soft for SummedVariance {

@@ -1,9 +1,9 @@
-//! Variance shadow maps [Donnelly, Lauritzen 2006]: mean and mean square of the depths in a texel, which can be filtered.
+//! Variance shadow maps [Donnelly, Lauritzen 2006]: mean and mean square of the depths in per texel, which can be filtered.
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
-use crate::technique::settings::Kind;
 use crate::technique::TechniqueAbout;
+use crate::technique::settings::Kind;
 
 crate::choices! {
     /// How the two moments are stored.
@@ -20,17 +20,17 @@ crate::choices! {
 crate::prefilter_settings! {
     /// Settings of [`Vsm`].
     pub struct VsmSettings {
-        /// Two 32-bit numbers a texel, two of 16 bits, or two of 32 bits over four channels of 16.
+        /// Two 32-bit numbers per texel, two of 16 bits, or two of 32 bits over four channels of 16.
         format: VsmFormat = VsmFormat::Rg32Float, Kind::Choice { options: VsmFormat::OPTIONS };
         /// Against light bleeding: so much of the bound becomes 0 and the rest is stretched; widens shadows.
         bleeding: f32 = 0.0, Kind::Number { min: 0.0, max: 0.95 };
     }
 }
 
-/// Shadow of the light's centre, filtered like a picture.
+/// Shadow of the light's centre, prefiltered.
 pub type Vsm = Prefiltered<Variance>;
 
-/// What [`Vsm`] stores.
+/// Values that [`Vsm`] stores.
 pub struct Variance;
 
 impl Prefilter for Variance {
@@ -39,7 +39,7 @@ impl Prefilter for Variance {
         name: "vsm",
         title: "Variance shadow maps",
         source: "Donnelly, Lauritzen 2006",
-        summary: "mean and variance of depth, filtered like a picture; light bleeds where shadows overlap",
+        summary: "mean and variance of depth, prefiltered; light bleeds where shadows overlap",
     };
     const WARP: &'static str = "techniques::moments::vsm::warp";
 

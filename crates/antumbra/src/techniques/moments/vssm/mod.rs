@@ -3,17 +3,17 @@
 use super::summed::{Plan, Soft, SoftUniform, Summed};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
 use crate::passes::maps::summed_area::{Sums, TableShape};
-use crate::technique::settings::Kind;
 use crate::technique::TechniqueAbout;
+use crate::technique::settings::Kind;
 
 crate::settings! {
     /// Settings of [`Vssm`].
     pub struct VssmSettings {
-        /// Shadow map, texels a side; its tables take 64 bytes a texel.
+        /// Shadow map, texels per side; its tables take 64 bytes per texel.
         map: u32 = 1024, Kind::Integer { min: 16, max: 16384 };
         /// Sums of 32 bits, of 32 bits less their mean, or of 64 bits.
         format: Sums = Sums::Fixed, Kind::Choice { options: Sums::OPTIONS };
-        /// Parts a side that a window is divided into, each judged at the receiver's plane there; 1 is none.
+        /// Parts per side that a window is divided into, each judged at the receiver's plane there; 1 is none.
         divisions: u32 = 4, Kind::Integer { min: 1, max: 16 };
     }
 }
@@ -21,7 +21,7 @@ crate::settings! {
 /// Soft shadow of an area light by the variance of depth.
 pub type Vssm = Summed<VarianceSoft>;
 
-/// What [`Vssm`] stores and reads.
+/// Values that [`Vssm`] stores and reads.
 pub struct VarianceSoft;
 
 impl Soft for VarianceSoft {
