@@ -126,6 +126,12 @@ impl Texture {
         self.part(ViewKey { dimension, first_layer: 0, layers: None, level: Some(level) })
     }
 
+    /// A view of one mip level of one layer, for render passes.
+    pub fn layer_mip(&self, layer: u32, level: u32) -> wgpu::TextureView {
+        let dimension = TextureViewDimension::D2;
+        self.part(ViewKey { dimension, first_layer: layer, layers: Some(1), level: Some(level) })
+    }
+
     /// An array view of one mip level of all layers.
     pub fn array_mip(&self, level: u32) -> wgpu::TextureView {
         let dimension = TextureViewDimension::D2Array;

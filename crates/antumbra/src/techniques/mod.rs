@@ -3,14 +3,14 @@
 use crate::technique::{TechniqueInfo, entry};
 
 // TODO(convert) pub mod alias_free;
-// TODO(convert) pub mod backprojection;
+pub mod backprojection;
 // TODO(convert) pub mod light_sampling;
 pub mod moments;
 pub mod pcss;
 // TODO(convert) pub mod pvssm;
 pub mod shadow_map;
 pub mod spec;
-// TODO(convert) pub mod ssm;
+pub mod ssm;
 
 /// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
 pub const TECHNIQUES: &[TechniqueInfo] = &[
@@ -18,7 +18,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<shadow_map::pcf::Pcf>(),
     entry::<pcss::Pcss>(),
     entry::<pcss::SmoothPcss>(),
-    // TODO(convert) entry::<ssm::Ssm>(),
+    entry::<ssm::Ssm>(),
     entry::<moments::vsm::Vsm>(),
     entry::<moments::evsm::Evsm>(),
     entry::<moments::msm::Msm>(),
@@ -27,8 +27,8 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<moments::savsm::Savsm>(),
     entry::<moments::vssm::Vssm>(),
     entry::<moments::cssm::Cssm>(),
-    // TODO(convert) entry::<backprojection::Backprojection>(),
-    // TODO(convert) entry::<backprojection::packet::Packet>(),
+    entry::<backprojection::Backprojection>(),
+    entry::<backprojection::packet::Packet>(),
     // TODO(convert) entry::<pvssm::Pvssm>(),
     // TODO(convert) entry::<pvssm::fvsm::Fvsm>(),
     // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),

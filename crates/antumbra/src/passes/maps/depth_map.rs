@@ -1,7 +1,6 @@
 //! The shadow map: depth of the nearest caster seen from a point of the light.
 
 use crate::error::Error;
-use crate::gpu::bindings::Binding;
 use crate::gpu::pipeline::{RenderPipeline, RenderTarget};
 use crate::gpu::recorder::{Recorder, depth_target};
 use crate::gpu::resources::BufferDescription;
@@ -11,7 +10,7 @@ use crate::input::casters::Casters;
 use crate::input::frame::Frame;
 use crate::input::map_view::MapView;
 use crate::passes::triangles::culling::{Culling, Surfaces};
-use crate::{binding_array, bindings, gpu_struct};
+use crate::{bindings, gpu_struct};
 use glam::Mat4;
 use std::sync::Arc;
 
@@ -39,13 +38,24 @@ pub(crate) struct Drawing<'a> {
     pub kept: wgpu::CompareFunction,
     /// Depths per texel, 1 or 4.
     pub samples: u32,
-    /// A map of the same size, before which the farthest surface of each texel is kept too.
-    pub farthest_before: Option<&'a Texture>,
-    /// Buffers that every surface of a texel is handed to; see [`DepthLayers`](super::depth_layers::DepthLayers).
-    pub layers: Option<&'a [Binding<'a>]>,
+    /// The surfaces of a texel that are kept besides that one.
+    pub extra: Extra<'a>,
     /// True if a surface is drawn to every texel that it touches, not only to those whose middle it covers; then nothing
     /// else can be kept.
     pub touched: bool,
+}
+
+/// Depths that a drawing keeps besides its map, in a buffer.
+#[derive(Clone, Copy)]
+pub(crate) enum Extra<'a> {
+    /// None.
+    Nothing,
+    /// The farthest surface of each texel before a map of the same size: the bits of its depth, complemented, row by row;
+    /// 0 where there is none.
+    FarthestBefore(&'a Texture),
+    /// The nearest surfaces of each texel, by a `LayerShape` and the bytes that it takes: see
+    /// [`DepthLayers`](super::depth_layers::DepthLayers).
+    Nearest(&'a wgpu::Buffer, u64),
 }
 
 gpu_struct! {
@@ -56,8 +66,7 @@ gpu_struct! {
     }
 }
 
-/// A drawn map, and the bits of the farthest depths before another map if these were asked for: four bytes per texel,
-/// row by row, complemented, 0 where there is nothing.
+/// A drawn map, and the buffer of its [`Extra`] depths.
 pub(crate) type Drawn = (DepthMap, Option<wgpu::Buffer>);
 
 impl<'a> Drawing<'a> {
@@ -69,8 +78,7 @@ impl<'a> Drawing<'a> {
             surfaces,
             kept: wgpu::CompareFunction::Greater,
             samples: 1,
-            farthest_before: None,
-            layers: None,
+            extra: Extra::Nothing,
             touched: false,
         }
     }
@@ -90,31 +98,37 @@ impl<'a> Drawing<'a> {
         let description = TextureDescription::new([size; 2], format, self.help).samples(self.samples);
         let texture = recorder.texture(self.label, description);
         let texel = recorder.uniform("map texel", &ConservativeUniform { half_texel: 1.001 / size as f32 });
-        let farthest = self.farthest_before.map(|before| {
-            let bytes = 4 * u64::from(size) * u64::from(size);
-            (before, recorder.buffer("farthest depths", BufferDescription::new(bytes).cleared()))
-        });
-        let [opaque, masked] = self.pipelines(recorder)?;
-        let own = bindings! { map_view: &view, visible: &culling.visible };
-        let conservative = bindings! { conservative: &texel };
-        let behind =
-            farthest.as_ref().map(|(map, depths)| binding_array! { background: *map, farthest_depths: depths });
-        let extra = match &behind {
-            Some(behind) => &behind[..],
-            None if self.touched => conservative,
-            None => self.layers.unwrap_or_default(),
+        let texels = u64::from(size) * u64::from(size);
+        let depths = match self.extra {
+            Extra::Nothing => None,
+            Extra::FarthestBefore(_) => {
+                Some(recorder.buffer("farthest depths", BufferDescription::new(4 * texels).cleared()))
+            }
+            Extra::Nearest(_, bytes) => Some(recorder.buffer("nearest depths", BufferDescription::new(bytes))),
         };
+        let [opaque, masked] = self.pipelines(recorder)?;
+        let mut own = bindings! { map_view: &view, visible: &culling.visible }.to_vec();
+        match (self.extra, &depths) {
+            (Extra::FarthestBefore(map), Some(depths)) => {
+                own.extend_from_slice(bindings! { background: map, farthest_depths: depths });
+            }
+            (Extra::Nearest(shape, _), Some(depths)) => {
+                own.extend_from_slice(bindings! { layer_shape: shape, nearest_depths: depths });
+            }
+            _ if self.touched => own.extend_from_slice(bindings! { conservative: &texel }),
+            _ => {}
+        }
         // Reversed depth: infinitely far is 0, the nearest of all 1.
         let nothing = if self.kept == wgpu::CompareFunction::Less { 1.0 } else { 0.0 };
         recorder.render(self.label, &[], depth_target(&texture.view, Some(nothing)), 1, |draw| {
             for (i, batch) in casters.batches.iter().enumerate() {
                 let pipeline = if batch.masked { &masked } else { &opaque };
-                draw.bind(pipeline, &[own, extra, &batch.bindings(casters)])?;
+                draw.bind(pipeline, &[&own, &batch.bindings(casters)])?;
                 draw.pass.draw_indirect(&culling.draws, Culling::draw_offset(i));
             }
             Ok(())
         })?;
-        Ok((DepthMap { texture, size, culling }, farthest.map(|(_, depths)| depths)))
+        Ok((DepthMap { texture, size, culling }, depths))
     }
 
     fn pipelines(&self, recorder: &Recorder) -> Result<[Arc<RenderPipeline>; 2], Error> {
@@ -128,8 +142,8 @@ impl<'a> Drawing<'a> {
         let key = match self.touched {
             true => ShaderKey::new("passes::maps::conservative_map").feature("native", native),
             false => ShaderKey::new("passes::maps::depth_map")
-                .feature("layers", self.layers.is_some())
-                .feature("farthest", self.farthest_before.is_some()),
+                .feature("layers", matches!(self.extra, Extra::Nearest(..)))
+                .feature("farthest", matches!(self.extra, Extra::FarthestBefore(_))),
         };
         let opaque = recorder.gpu.render_pipeline(&key, &target)?;
         Ok([opaque, recorder.gpu.render_pipeline(&key.feature("masked", true), &target)?])

@@ -1,10 +1,10 @@
 //! Maps seen from the light: depths, layers, pyramids, moments and tables.
 
-// TODO(convert) pub mod depth_layers;
+pub mod depth_layers;
 pub mod depth_map;
 pub mod depth_pyramid;
 pub mod light_depth;
 // TODO(convert) pub mod light_maps;
 pub mod moments;
-// TODO(convert) pub mod patch_pyramid;
+pub mod patch_pyramid;
 pub mod summed_area;

@@ -4,4 +4,4 @@ pub mod classify;
 pub mod geometry_buffer;
 pub mod penumbra_widths;
 pub mod shading;
-// TODO(convert) pub mod sparse;
+pub mod sparse;

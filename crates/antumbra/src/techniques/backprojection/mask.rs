@@ -1,7 +1,7 @@
 //! `techniques/backprojection/mask.wesl`: the light as a mask of Hammersley's points.
 
-use crate::testing::{Random, Worst, evaluate_variant};
 use crate::techniques::backprojection::Bits;
+use crate::testing::{Random, Worst, evaluate_variant};
 use glam::{DVec2, Vec2};
 use proptest::prelude::*;
 

@@ -1,20 +1,24 @@
-//! Layered back-projection: every patch of the map that rises above the receiver's plane is projected from the receiver
-//! to the light, and the light's points that it covers are taken from the light [Guennebaud 2006, 2007].
+//! Gaël Guennebaud, Loïc Barthe, Mathias Paulin, 2006: Real-time soft shadow mapping by backprojection,
+//! <https://doi.org/10.2312/EGWR/EGSR06/227-234>, and 2007: High-quality adaptive soft shadow mapping,
+//! <https://doi.org/10.1111/j.1467-8659.2007.01075.x>.
+//!
+//! Every patch of the map above the receiver's plane is projected from the receiver back to the light, and hides the
+//! light's sample points that it covers. Patches come from a pyramid over several depth layers.
 
-use crate::input::frame::FrameUniform;
-use crate::passes::pixels::classify::{Listing, PenumbraList};
-use crate::passes::maps::depth_layers::DepthLayers;
-use crate::passes::maps::depth_pyramid::DepthPyramid;
-use crate::passes::maps::patch_pyramid::PatchPyramid;
-use crate::passes::pixels::sparse::SparsePixels;
-use crate::gpu::pipeline::{Binding, ComputePipeline};
+use crate::error::Error;
+use crate::gpu::bindings::Binding;
+use crate::gpu::device::Gpu;
+use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::uniform;
 use crate::gpu::shader::ShaderKey;
-use crate::technique::{TechniqueAbout, TechniqueFactory, InnerPicture, Memory, Technique};
-use crate::error::Error;
 use crate::input::frame::Frame;
-use crate::gpu::device::Gpu;
+use crate::passes::maps::depth_layers::DepthLayers;
+use crate::passes::maps::depth_pyramid::DepthPyramid;
+use crate::passes::maps::patch_pyramid::patch_pyramid;
+use crate::passes::pixels::classify::{Listing, PenumbraList};
+use crate::passes::pixels::sparse::shade_sparsely;
+use crate::technique::{Technique, TechniqueAbout, TechniqueFactory};
 use crate::{bindings, gpu_struct};
 use serde_json::{Map, Value};
 use std::sync::Arc;
@@ -27,58 +31,48 @@ mod settings;
 pub use settings::{BackprojectionSettings, Bits, Join, Quality, Spacing};
 
 gpu_struct! {
-    /// How finely is looked.
+    /// Resolution of the light.
     pub(crate) struct BackprojectionUniform {
         layers: u32,
-        /// Smallest width of a patch on the light, as a part of the light's.
+        /// Smallest width of a patch on the light, as a fraction of the light's.
         leaf: f32,
-        /// Pixels between those that are looked at first.
+        /// Spacing of the pixels that are shaded first.
         spacing: f32,
-
     }
 }
 
 /// Shadow of a rectangular light by patches that are projected back to it.
 pub struct Backprojection {
     settings: BackprojectionSettings,
-    /// True if a workgroup looks at a tile of the picture, false if at any 64 pixels.
+    /// True if a workgroup shades a tile of the image, false if it shades any 64 pixels.
     by_tiles: bool,
     gather: Arc<ComputePipeline>,
     uniform: wgpu::Buffer,
-    map: Option<DepthLayers>,
-    pyramid: Option<DepthPyramid>,
-    patches: Option<PatchPyramid>,
-    list: Option<PenumbraList>,
-    sparse: Option<SparsePixels>,
 }
 
 impl TechniqueFactory for Backprojection {
     type Settings = BackprojectionSettings;
+    type Technique = Backprojection;
     const ABOUT: TechniqueAbout = TechniqueAbout {
         name: "backprojection",
         title: "Layered back-projection",
         source: "Guennebaud 2006, 2007",
-        summary: "what hides the light is projected back to it from each pixel, over several layers; nothing to tune",
+        summary: "each pixel projects the occluders of several depth layers back to the light; nothing to tune",
     };
 
     fn defaults(given: &Map<String, Value>) -> BackprojectionSettings {
         BackprojectionSettings::suited_to(given)
     }
 
-    fn make(gpu: &Gpu, settings: BackprojectionSettings) -> Result<Self, Error> {
-        Backprojection::with_gather(gpu, settings, "techniques::backprojection::gather", false)
+    fn make(gpu: &Gpu, settings: BackprojectionSettings) -> Result<Backprojection, Error> {
+        Backprojection::new(gpu, settings, false)
     }
 }
 
 impl Backprojection {
-    /// With the shader that gathers the patches.
-    pub(crate) fn with_gather(
-        gpu: &Gpu,
-        settings: BackprojectionSettings,
-        gather: &'static str,
-        by_tiles: bool,
-    ) -> Result<Self, Error> {
-        let key = ShaderKey::new(gather)
+    fn new(gpu: &Gpu, settings: BackprojectionSettings, by_tiles: bool) -> Result<Backprojection, Error> {
+        let module = if by_tiles { "techniques::backprojection::packet" } else { "techniques::backprojection::gather" };
+        let key = ShaderKey::new(module)
             .feature(settings.bits.feature(), true)
             .feature("sum", settings.join == Join::Sum)
             .feature("flat", !settings.gaps_filled)
@@ -88,75 +82,35 @@ impl Backprojection {
             leaf: 1.0 / settings.window,
             spacing: settings.spacing.pixels() as f32,
         };
-        Ok(Backprojection {
-            gather: gpu.compute_pipeline(&key, "gather")?,
-            uniform: uniform(gpu, "backprojection", &value),
-            settings,
-            by_tiles,
-            map: None,
-            pyramid: None,
-            patches: None,
-            list: None,
-            sparse: None,
-        })
+        let gather = gpu.compute_pipeline(&key, "gather")?;
+        Ok(Backprojection { settings, by_tiles, gather, uniform: uniform(gpu, "backprojection", &value) })
     }
 }
 
 impl Technique for Backprojection {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
-        let gpu = recorder.gpu;
-        let maps = DepthLayers::of_light(
-            &mut self.map,
-            recorder,
-            frame,
-            self.settings.map,
-            self.settings.layers,
-            self.settings.apart,
-        )?;
-        let map = &maps.nearest;
-        let list = PenumbraList::ensure(&mut self.list, gpu, frame.size);
-        let pyramid = DepthPyramid::ensure(&mut self.pyramid, gpu, self.settings.map);
-        let patches = PatchPyramid::ensure(&mut self.patches, gpu, self.settings.map, self.settings.layers);
-        patches.record(recorder, maps, frame.frustum.near, maps.gap(frame, self.settings.apart))?;
-        pyramid.record(recorder, map, frame.frustum.near)?;
-        list.record(recorder, frame, map, pyramid, Listing::default())?;
-        let look = |recorder: &mut Recorder, list: &PenumbraList, sharpness: &[Binding]| {
-            let set = bindings! {
-                depth_map: &map.texture,
-                penumbra_pixels: &list.buffer,
-                penumbra_tiles: &list.tiles,
-                backprojection: &self.uniform,
-                patches: &patches.patches,
-                depth_layers: &maps.texture,
-            };
-            let set = frame.bindings(&[set, sharpness].concat());
-            let work = if self.by_tiles { &list.tiles } else { &list.buffer };
-            recorder.compute("back-projection", &self.gather, &set, Work::Indirect(work, 0));
+        let BackprojectionSettings { map, layers, apart, spacing, .. } = self.settings;
+        let near = frame.frustum.near;
+        let maps = DepthLayers::of_light(recorder, frame, map, layers, apart)?;
+        let patches = patch_pyramid(recorder, &maps, near)?;
+        let pyramid = DepthPyramid::record(recorder, &maps.nearest, near)?;
+        let list = PenumbraList::record(recorder, frame, &maps.nearest, &pyramid, Listing::default())?;
+        let own = bindings! {
+            depth_map: &maps.nearest.texture,
+            backprojection: &self.uniform,
+            patches: &patches,
+            depth_layers: &maps.texture,
         };
-        let spacing = self.settings.spacing.pixels();
+        let gather = |recorder: &mut Recorder, work: &wgpu::Buffer, pixels: &[Binding]| {
+            let set = [&frame.bindings()[..], own, pixels];
+            recorder.compute("back-projection", &self.gather, &set, Work::Indirect(work, 0))
+        };
+        let (spacing, work) = (spacing.pixels(), if self.by_tiles { &list.tiles } else { &list.buffer });
         if spacing == 1 {
-            look(recorder, list, &[]);
-            return Ok(());
+            return gather(recorder, work, bindings! { penumbra_pixels: &list.buffer, penumbra_tiles: &list.tiles });
         }
-        let sparse = SparsePixels::ensure(&mut self.sparse, gpu, frame.size, spacing);
-        sparse.record(recorder, frame, list, |recorder, chosen| {
-            look(recorder, chosen, bindings! { sharpness: &sparse.sharpness });
+        shade_sparsely(recorder, frame, &list, spacing, |recorder, chosen, sharpness| {
+            gather(recorder, chosen, bindings! { penumbra_pixels: chosen, sharpness: sharpness })
         })
-    }
-
-    fn inner_pictures(&self) -> Vec<InnerPicture> {
-        let map = self.map.iter().flat_map(|m| [m.nearest.inner_picture(), m.inner_picture()]);
-        map.chain(self.pyramid.iter().flat_map(DepthPyramid::inner_pictures))
-            .chain(self.list.iter().map(PenumbraList::inner_picture))
-            .collect()
-    }
-
-    fn memory(&self) -> Vec<Memory> {
-        let map = self.map.iter().flat_map(DepthLayers::memory);
-        map.chain(self.pyramid.iter().map(DepthPyramid::memory))
-            .chain(self.patches.iter().map(PatchPyramid::memory))
-            .chain(self.list.iter().map(PenumbraList::memory))
-            .chain(self.sparse.iter().map(SparsePixels::memory))
-            .collect()
     }
 }

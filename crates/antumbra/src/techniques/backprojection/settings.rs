@@ -1,20 +1,20 @@
-//! What can be set.
+//! Settings of the family.
 
 use crate::technique::settings::Kind;
 use serde_json::{Map, Value};
 
 crate::choices! {
-    /// How the parts of the light that patches hide are put together.
+    /// How the areas that patches hide on the light are combined.
     pub enum Join {
-        /// Each point of the light is hidden once, however many patches cover it.
+        /// A sample point of the light is hidden once, by any number of patches.
         Union = "union",
-        /// Areas are added up, and what overlaps on the light is counted twice [Guennebaud 2006].
+        /// Areas are added; overlaps on the light count twice [Guennebaud 2006].
         Sum = "sum",
     }
 }
 
 crate::choices! {
-    /// Points of the light that are told apart, a bit each.
+    /// Number of sample points on the light, a bit each.
     pub enum Bits {
         /// 64.
         B64 = "64",
@@ -30,7 +30,7 @@ crate::choices! {
 }
 
 crate::choices! {
-    /// Pixels from one to the next.
+    /// Distance between pixels of a grid.
     pub enum Spacing {
         /// 1.
         S1 = "1",
@@ -44,43 +44,43 @@ crate::choices! {
 }
 
 crate::choices! {
-    /// Settings that go well together, found by `antumbra bench backprojection`.
+    /// Presets, found by `antumbra bench backprojection`.
     pub enum Quality {
-        /// As quick as percentage-closer soft shadows.
+        /// About as fast as percentage-closer soft shadows.
         Fast = "fast",
-        /// Little error for little time.
+        /// Small error in moderate time.
         Balanced = "balanced",
-        /// Hardly any error.
+        /// Smallest error.
         Best = "best",
     }
 }
 
 crate::settings! {
-    /// Settings of [`Backprojection`](super::Backprojection) and [`Packet`](crate::techniques::backprojection::packet::Packet).
+    /// Settings of [`Backprojection`](super::Backprojection) and [`Packet`](super::packet::Packet).
     pub struct BackprojectionSettings {
-        /// Where the other settings start from.
+        /// Preset: the defaults of the other settings.
         quality: Quality = Quality::Balanced, Kind::Choice { options: Quality::OPTIONS };
-        /// Shadow map, texels a side.
+        /// Shadow map, texels per side.
         map: u32 = 1536, Kind::Integer { min: 16, max: 16384 };
-        /// Layers behind each other that each texel of the map keeps: a surface each, or all between two.
+        /// Depth layers per texel of the map: a surface each, or all surfaces between two depths.
         layers: u32 = 2, Kind::Integer { min: 1, max: 4 };
-        /// Surfaces are one layer if the light moves them by fewer texels than this against each other. 0 keeps each apart.
+        /// Merge surfaces whose parallax over the light is below this many texels into one layer. 0 merges none.
         apart: f32 = 8.0, Kind::Number { min: 0.0, max: 1000.0 };
-        /// Patches a side that the light is resolved into at least.
+        /// Resolution of the light: at least this many patches per side.
         window: f32 = 4.0, Kind::Number { min: 1.0, max: 256.0 };
-        /// Pixels between those that are looked at first; the others follow where these do not tell them. 1 looks at all.
+        /// Spacing of the pixels that are shaded first; the others are interpolated, or shaded where that is not safe. 1 shades all.
         spacing: Spacing = Spacing::S2, Kind::Choice { options: Spacing::OPTIONS };
-        /// Points of the light for join=union.
+        /// Sample points on the light for join=union.
         bits: Bits = Bits::B256, Kind::Choice { options: Bits::OPTIONS };
-        /// How the parts of the light that patches hide are put together.
+        /// How the areas that patches hide on the light are combined: each sample point once, or areas added.
         join: Join = Join::Union, Kind::Choice { options: Join::OPTIONS };
-        /// Patches are as steep as their surface, so that neighbours meet; false leaves them flat, with gaps.
+        /// Patches follow the slope of their surface, so that neighbours meet; false: flat patches with gaps between them.
         gaps_filled: bool = true, Kind::Toggle;
     }
 }
 
 impl BackprojectionSettings {
-    /// The settings of a quality.
+    /// The settings of a preset.
     pub fn of_quality(quality: Quality) -> BackprojectionSettings {
         let balanced = BackprojectionSettings { quality, ..Default::default() };
         match quality {
@@ -98,7 +98,7 @@ impl BackprojectionSettings {
         }
     }
 
-    /// The settings of the quality that is among `given`.
+    /// The settings of the preset among `given`, or the defaults.
     pub(crate) fn suited_to(given: &Map<String, Value>) -> BackprojectionSettings {
         let quality = given.get("quality").and_then(|q| serde_json::from_value(q.clone()).ok());
         quality.map_or_else(Default::default, BackprojectionSettings::of_quality)
@@ -117,7 +117,7 @@ impl Spacing {
 }
 
 impl Bits {
-    /// The feature of `mask.wesl` that stands for it; 256 is what it has without one.
+    /// The feature of `mask.wesl`.
     pub(crate) fn feature(self) -> &'static str {
         match self {
             Bits::B64 => "bits64",

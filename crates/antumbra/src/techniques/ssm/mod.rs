@@ -1,101 +1,95 @@
-//! Soft shadow maps: the texels of an occluder map are micro-patches, and each adds its soft shadow to a map of the
-//! receivers [Atty 2006].
+//! Lionel Atty, Nicolas Holzschuch, Marc Lapierre, Jean-Marc Hasenfratz, Charles Hansen, François Sillion, 2006: Soft
+//! shadow maps: efficient sampling of light source visibility, <http://maverick.inria.fr/Publications/2006/AHLHHS06/>.
+//!
+//! The texels of an occluder map are micro-patches. Each adds its soft shadow to a map of the receivers, which is projected
+//! on the image.
 
 mod accumulate;
-mod caution;
 mod maps;
 pub(crate) mod patches;
 #[cfg(test)]
 mod penumbra;
 mod settings;
+mod warnings;
 
-use crate::gpu::pipeline::ComputePipeline;
-use crate::gpu::recorder::{Recorder, Work};
-use crate::gpu::texture::Texture;
-use crate::technique::{TechniqueAbout, TechniqueFactory, StatsFuture, InnerPicture, Memory, Technique};
-use crate::error::Error;
-use crate::input::frame::Frame;
-use crate::gpu::device::Gpu;
 use crate::bindings;
-use accumulate::SoftMap;
+use crate::error::Error;
+use crate::gpu::device::Gpu;
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::readback::read_buffer;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::shader::ShaderKey;
+use crate::gpu::texture::Texture;
+use crate::input::frame::Frame;
+use crate::technique::{StatsFuture, Technique, TechniqueAbout, TechniqueFactory};
+use accumulate::soft_shadow_map;
 use maps::Maps;
 use patches::Patches;
 use std::sync::Arc;
 
-pub use caution::largest_float16_q;
 pub use settings::{Accumulate, Format, SsmSettings};
+pub use warnings::largest_float16_q;
 
-/// Soft shadows of occluders on receivers, made in the light's own map and projected on the scene.
+/// Soft shadows of occluders on receivers, computed in a map from the light and projected on the image.
 pub struct Ssm {
     settings: SsmSettings,
     project: Arc<ComputePipeline>,
-    patches: Patches,
-    soft: SoftMap,
-    maps: Option<Maps>,
-    /// What has been said already.
-    said: Vec<String>,
+    /// Maps of the last frame.
+    last: Option<SsmMaps>,
+    /// Warnings so far.
+    warned: Vec<String>,
+}
+
+/// The maps of a frame, `map` x `map` texels over its frustum, row 0 at the smallest y.
+pub struct SsmMaps {
+    /// `R32Float`: the fraction of the light that is hidden from the receiver at each texel.
+    pub soft_shadow: Texture,
+    /// `Depth32Float`: `near / z` of the receivers, 0 where there is none.
+    pub receivers: Texture,
+    /// `Depth32Float`: `near / z` of the nearest occluders, 0 where there is none.
+    pub occluders: Texture,
+    totals: wgpu::Buffer,
 }
 
 impl TechniqueFactory for Ssm {
     type Settings = SsmSettings;
+    type Technique = Ssm;
     const ABOUT: TechniqueAbout = TechniqueAbout {
         name: "ssm",
         title: "Soft shadow maps",
         source: "Atty 2006",
-        summary: "each texel of an occluder map casts the soft shadow of a small rectangle; occluders take no shadow",
+        summary: "each texel of an occluder map casts the soft shadow of a small rectangle; occluders receive no shadow",
     };
 
-    fn make(gpu: &Gpu, settings: SsmSettings) -> Result<Self, Error> {
+    fn make(gpu: &Gpu, settings: SsmSettings) -> Result<Ssm, Error> {
         gpu.check_size("shadow map", settings.map, settings.map)?;
-        let settings = blendable(gpu, settings);
-        let key = Patches::key("techniques::ssm::project");
-        let patches = Patches::new(gpu, &settings);
-        Ok(Ssm {
-            project: gpu.compute_pipeline(&key, "project")?,
-            soft: SoftMap::new(gpu, &settings, &patches),
-            patches,
-            maps: None,
-            said: Vec::new(),
-            settings,
-        })
+        let project = gpu.compute_pipeline(&ShaderKey::new("techniques::ssm::project"), "project")?;
+        Ok(Ssm { settings: blendable(gpu, settings), project, last: None, warned: Vec::new() })
     }
 }
 
-/// Where the adapter cannot blend 32-bit floats, texels gather.
+/// Gathers where the adapter cannot blend 32-bit floats.
 fn blendable(gpu: &Gpu, settings: SsmSettings) -> SsmSettings {
     let blends = settings.accumulate == Accumulate::Blend && settings.format == Format::Float32;
     if blends && !gpu.capabilities.float32_blending {
-        tracing::warn!("ssm: this adapter does not blend 32-bit floats; accumulate=gather takes the place of blend");
+        tracing::warn!("ssm: this adapter does not blend 32-bit floats; accumulate=gather replaces blend");
         return SsmSettings { accumulate: Accumulate::Gather, ..settings };
     }
     settings
 }
 
 impl Ssm {
-    /// `R32Float`, `map` x `map` texels over the frame's frustum, row 0 at its smallest y: the part of the light that
-    /// is hidden from the receiver at each texel. Filled by `record`.
-    pub fn soft_shadow_map(&self) -> &Texture {
-        &self.soft.merged
+    /// The maps of the last frame; none before the first.
+    pub fn maps(&self) -> Option<&SsmMaps> {
+        self.last.as_ref()
     }
 
-    /// `Depth32Float`, of the same size: `near / z` of the receivers, 0 where there is none. None before the first
-    /// frame.
-    pub fn receiver_map(&self) -> Option<&Texture> {
-        self.maps.as_ref().map(|maps| &maps.receivers.texture)
-    }
-
-    /// `Depth32Float`, of the same size: `near / z` of the nearest occluders, 0 where there is none. None before the
-    /// first frame.
-    pub fn occluder_map(&self) -> Option<&Texture> {
-        self.maps.as_ref().map(|maps| &maps.nearest.texture)
-    }
-
-    /// Says once what makes a picture of this frame wrong.
-    fn caution(&mut self, frame: &Frame) {
-        for sentence in caution::of_frame(frame, &self.settings) {
-            if !self.said.contains(&sentence) {
+    /// Warns once of each fault that the image of this frame will have.
+    fn warn(&mut self, frame: &Frame) {
+        for sentence in warnings::of_frame(frame, &self.settings) {
+            if !self.warned.contains(&sentence) {
                 tracing::warn!("{sentence}");
-                self.said.push(sentence);
+                self.warned.push(sentence);
             }
         }
     }
@@ -103,31 +97,24 @@ impl Ssm {
 
 impl Technique for Ssm {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
-        self.caution(frame);
-        let SsmSettings { map, passes, .. } = self.settings;
-        let maps = Maps::ensure(&mut self.maps, recorder.gpu, map, passes, &frame.casters)?;
-        maps.record(recorder, frame)?;
-        self.patches.record(recorder, frame, maps)?;
-        self.soft.record(recorder, frame, maps, &self.patches)?;
-
-        let mut set = self.patches.bindings(frame, &maps.receivers);
-        set.extend_from_slice(bindings! { soft: &self.soft.merged });
-        let [width, height] = frame.size;
-        recorder.compute("projection", &self.project, &frame.bindings(&set), Work::Threads([width, height, 1]));
+        self.warn(frame);
+        let maps = Maps::record(recorder, frame, self.settings.map, self.settings.passes)?;
+        let patches = Patches::record(recorder, frame, &self.settings, &maps)?;
+        let soft_shadow = soft_shadow_map(recorder, frame, &self.settings, &maps, &patches)?;
+        let set = [&frame.bindings()[..], &patches.bindings(&maps), bindings! { soft: &soft_shadow }];
+        recorder.compute("projection", &self.project, &set, Work::Pixels(frame.size))?;
+        let (receivers, occluders) = (maps.receivers.texture, maps.nearest.texture);
+        self.last = Some(SsmMaps { soft_shadow, receivers, occluders, totals: patches.totals });
         Ok(())
     }
 
-    fn inner_pictures(&self) -> Vec<InnerPicture> {
-        let maps = self.maps.iter().flat_map(Maps::inner_pictures);
-        maps.chain([self.patches.inner_picture()]).chain(self.soft.inner_pictures()).collect()
-    }
-
-    fn memory(&self) -> Vec<Memory> {
-        let maps = self.maps.iter().flat_map(Maps::memory);
-        maps.chain(self.patches.memory()).chain(self.soft.memory()).collect()
-    }
-
+    /// Patches, those that float16 loses, and the widest penumbra in texels of its level.
     fn stats<'a>(&'a self, gpu: &'a Gpu) -> StatsFuture<'a> {
-        Box::pin(self.patches.stats(gpu))
+        Box::pin(async move {
+            let Some(last) = &self.last else { return Ok(Vec::new()) };
+            let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(gpu, &last.totals).await?);
+            let (patches, lost, widest) = (words[32], words[33], f32::from_bits(words[34]));
+            Ok(vec![("patches", patches.into()), ("float16 loses", lost.into()), ("widest penumbra", widest.into())])
+        })
     }
 }

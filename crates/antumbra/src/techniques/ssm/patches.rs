@@ -2,32 +2,29 @@
 
 use super::SsmSettings;
 use super::maps::Maps;
-use crate::input::frame::FrameUniform;
-use crate::passes::maps::depth_map::DepthMap;
-use crate::passes::maps::depth_pyramid::DepthPyramid;
-use crate::gpu::bindings::Binding;
-use crate::gpu::recorder::{Recorder, Work, dispatch};
-use crate::gpu::resources::{Texture, UniformArray, read_buffer, storage_buffer, uniform};
-use crate::gpu::shader::{HostStruct, ShaderKey};
-use crate::technique::{InnerPicture, Memory};
 use crate::error::Error;
+use crate::gpu::bindings::Binding;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::{BufferDescription, UniformArray};
+use crate::gpu::shader::ShaderKey;
+use crate::gpu::texture::{Texture, TextureDescription};
 use crate::input::frame::Frame;
-use crate::gpu::device::Gpu;
-use crate::{bindings, gpu_struct};
+use crate::passes::maps::depth_pyramid::DepthPyramid;
+use crate::{binding_array, bindings, gpu_struct};
 
 gpu_struct! {
-    /// What is the same for all levels.
+    /// Constants of all levels.
     pub(crate) struct SsmUniform {
         /// Inverse distance of the farthest receiver.
         farthest_receiver_q: f32,
-        /// Texels of a level that a penumbra is wide at least.
+        /// Smallest width of a penumbra, in texels of its level.
         window: f32,
         levels: u32,
         /// Occluder maps.
         layers: u32,
-        /// Texels a side of the maps.
+        /// Texels per side of the maps.
         size: u32,
-        /// The same, rounded up so that the tiles of every level are whole.
+        /// The same, rounded up to whole tiles on every level.
         padded: u32,
     }
 }
@@ -40,145 +37,129 @@ gpu_struct! {
     }
 }
 
-/// Patches a side of a tile, and of the coarsest level at least.
+/// Patches per side of a tile; the coarsest level has at least one tile.
 const TILE: u32 = 8;
-/// Bytes of `Totals` in `levels.wesl`: 32 largest depths, three figures, rounded up.
+/// Bytes of `Totals` in `levels.wesl`: 32 largest depths, three counts, rounded up.
 const TOTALS: u64 = 4 * 36;
 
 /// Every level of the patches of one or two occluder maps.
 pub(super) struct Patches {
     pub shape: SsmUniform,
-    /// `Rg32Float`, a layer an occluder map, a mip a level: covered part and inverse distance.
+    /// `Rg32Float`: covered fraction and inverse distance.
     patches: Texture,
     /// `R32Float`: the largest inverse distance of each tile.
     tile_tops: Texture,
-    /// `Rgba32Float`: what goes up from each level.
-    rising: Texture,
-    totals: wgpu::Buffer,
+    /// Counts of the frame; see [`Ssm`](super::Ssm).
+    pub totals: wgpu::Buffer,
     uniform: wgpu::Buffer,
-    /// Two a level: its layers.
-    pub levels: UniformArray<SsmLevel>,
-    /// Each level of patches, of tiles' tops and of what rises.
-    level_views: Vec<[wgpu::TextureView; 3]>,
-    receiver_bounds: Option<DepthPyramid>,
+    levels: UniformArray,
 }
 
-impl Patches {
-    /// Room for all levels.
-    pub fn new(gpu: &Gpu, settings: &SsmSettings) -> Patches {
+impl SsmUniform {
+    fn new(frame: &Frame, settings: &SsmSettings) -> SsmUniform {
         let levels = if settings.hierarchy { (settings.map / TILE).max(1).ilog2() + 1 } else { 1 };
-        let padded = settings.map.next_multiple_of(TILE << (levels - 1));
-        let shape = SsmUniform {
-            farthest_receiver_q: 0.0,
+        SsmUniform {
+            farthest_receiver_q: 1.0 / frame.frustum.receivers[1],
             window: settings.window as f32,
             levels,
             layers: settings.passes,
             size: settings.map,
-            padded,
-        };
-        let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-        let texture =
-            |label, side, format| Texture::array(gpu, label, [side; 2], settings.passes, levels, format, usage);
-        let of_level = |i| SsmLevel { level: i / 2, layer: i % 2 };
-        let patches = texture("micro-patches", padded, wgpu::TextureFormat::Rg32Float);
-        let tile_tops = texture("nearest patches", padded / TILE, wgpu::TextureFormat::R32Float);
-        let rising = texture("rising patches", padded, wgpu::TextureFormat::Rgba32Float);
-        Patches {
-            level_views: (0..levels).map(|i| [&patches, &tile_tops, &rising].map(|t| t.array_mip(i))).collect(),
-            patches,
-            tile_tops,
-            rising,
-            totals: storage_buffer(gpu, "patch totals", TOTALS),
-            uniform: uniform(gpu, "soft shadow map", &shape),
-            levels: UniformArray::new(gpu, "patch levels", &(0..2 * levels).map(of_level).collect::<Vec<_>>()),
-            receiver_bounds: settings.hierarchy.then(|| DepthPyramid::new(gpu, settings.map)),
-            shape,
+            padded: settings.map.next_multiple_of(TILE << (levels - 1)),
         }
     }
 
-    /// A key of a module that reads patches.
-    pub fn key(module: &'static str) -> ShaderKey {
-        ShaderKey::new(module)
+    /// A texture of all levels and layers with a texel for each square of `patches` x `patches` patches.
+    fn texture(&self, patches: u32, format: wgpu::TextureFormat, help: &'static str) -> TextureDescription {
+        TextureDescription::new([self.padded / patches; 2], format, help).layers(self.layers).mips(self.levels)
+    }
+}
+
+impl Patches {
+    /// Turns texels of the occluder maps into patches, and moves those with wide penumbrae to coarser levels.
+    pub fn record(
+        recorder: &mut Recorder,
+        frame: &Frame,
+        settings: &SsmSettings,
+        maps: &Maps,
+    ) -> Result<Patches, Error> {
+        let bounds = match settings.hierarchy {
+            true => Some(DepthPyramid::record(recorder, &maps.receivers, frame.frustum.near)?),
+            false => None,
+        };
+        let shape = SsmUniform::new(frame, settings);
+        let help =
+            "covered fraction of each micro-patch and its inverse distance, 1/metres; a mip level for each level";
+        let (tops, rest) =
+            ("largest inverse distance of each tile, 1/metres", "sums of the patches that move up a level");
+        let levels = (0..2 * shape.levels).map(|i| SsmLevel { level: i / 2, layer: i % 2 });
+        let patches = Patches {
+            patches: recorder.texture("micro-patches", shape.texture(1, wgpu::TextureFormat::Rg32Float, help)),
+            tile_tops: recorder.texture("nearest patches", shape.texture(TILE, wgpu::TextureFormat::R32Float, tops)),
+            totals: recorder.buffer("patch totals", BufferDescription::new(TOTALS).cleared()),
+            uniform: recorder.uniform("soft shadow map", &shape),
+            levels: recorder.uniforms("patch levels", levels),
+            shape,
+        };
+        let rising = recorder.texture("rising patches", shape.texture(1, wgpu::TextureFormat::Rgba32Float, rest));
+        let mut optional = Vec::new();
+        if let Some(bounds) = &bounds {
+            optional.extend(binding_array! { pyramid_bounds: &bounds.bounds });
+        }
+        if let Some(farthest) = &maps.farthest {
+            optional.extend(binding_array! { farthest_occluders: farthest });
+        }
+        let key = ShaderKey::new("techniques::ssm::patches")
+            .feature("flat", bounds.is_none())
+            .feature("farthest", maps.farthest.is_some());
+        let first = recorder.gpu.compute_pipeline(&key.clone().feature("first", true), "raise")?;
+        let next = recorder.gpu.compute_pipeline(&key, "raise")?;
+        for level in 0..shape.levels {
+            let [level_patches, level_tops, level_rising] =
+                [&patches.patches, &patches.tile_tops, &rising].map(|texture| texture.array_mip(level));
+            let below = rising.array_mip(level.saturating_sub(1));
+            let step = patches.level(level, 0);
+            let set = bindings! {
+                step: &step,
+                ssm: &patches.uniform,
+                totals: &patches.totals,
+                depth_map: &maps.receivers.texture,
+                nearest_occluders: &maps.nearest.texture,
+                level_patches: &level_patches,
+                level_tops: &level_tops,
+                level_rising: &level_rising,
+                rising: &below,
+            };
+            let pipeline = if level == 0 { &first } else { &next };
+            let side = patches.side(level);
+            let work = Work::Threads([side, side, shape.layers]);
+            recorder.compute("micro-patches", pipeline, &[&frame.bindings(), set, &optional], work)?;
+        }
+        Ok(patches)
     }
 
-    /// Texels a side of a level.
+    /// Texels per side of a level.
     pub fn side(&self, level: u32) -> u32 {
         self.shape.padded >> level
     }
 
-    /// Turns texels of the occluder maps into patches, and merges those that go up.
-    pub fn record(&self, recorder: &mut Recorder, frame: &Frame, maps: &Maps) -> Result<(), Error> {
-        let shape = SsmUniform { farthest_receiver_q: 1.0 / frame.frustum.receivers[1], ..self.shape };
-        recorder.gpu.queue.write_buffer(&self.uniform, 0, &shape.uniform_bytes());
-        recorder.encoder.clear_buffer(&self.totals, 0, None);
-        if let Some(bounds) = &self.receiver_bounds {
-            bounds.record(recorder, &maps.receivers, frame.frustum.near)?;
-        }
-        let key = Self::key("techniques::ssm::patches").feature("flat", self.receiver_bounds.is_none());
-        let first = recorder.gpu.compute_pipeline(&key.clone().feature("first", true), "raise")?;
-        let next = recorder.gpu.compute_pipeline(&key, "raise")?;
-        recorder.compute_pass("micro-patches", |gpu, pass| {
-            for level in 0..shape.levels {
-                let pipeline = if level == 0 { &first } else { &next };
-                let step = self.levels.at(2 * level);
-                let views = &self.level_views[level as usize];
-                let [_, _, below] = &self.level_views[level.saturating_sub(1) as usize];
-                let mut set = bindings! {
-                    step: &step,
-                    ssm: &self.uniform,
-                    totals: &self.totals,
-                    depth_map: &maps.receivers.texture,
-                    nearest_occluders: &maps.nearest.texture,
-                    farthest_occluders: &maps.farthest,
-                    level_patches: &views[0],
-                    level_tops: &views[1],
-                    level_rising: &views[2],
-                    rising: below,
-                    frame: &frame.uniform,
-                }
-                .to_vec();
-                if let Some(bounds) = &self.receiver_bounds {
-                    set.extend_from_slice(bindings! { pyramid_bounds: &bounds.bounds });
-                }
-                pass.set_pipeline(&pipeline.pipeline);
-                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, &set), &[]);
-                dispatch(pass, pipeline, Work::Threads([self.side(level), self.side(level), shape.layers]));
-            }
-        });
-        Ok(())
+    /// A texture with a texel for each patch of all levels and layers.
+    pub fn texture(&self, format: wgpu::TextureFormat, help: &'static str) -> TextureDescription {
+        self.shape.texture(1, format, help)
     }
 
-    /// What shaders import from `levels.wesl`.
-    pub fn bindings<'a>(&'a self, frame: &'a Frame, receivers: &'a DepthMap) -> Vec<Binding<'a>> {
-        bindings! {
-            frame: &frame.uniform,
-            depth_map: &receivers.texture,
+    /// The uniform of a level of a layer.
+    pub fn level(&self, level: u32, layer: u32) -> wgpu::BindingResource<'_> {
+        self.levels.at(2 * level + layer)
+    }
+
+    /// The resources of `levels.wesl`.
+    pub fn bindings<'a>(&'a self, maps: &'a Maps) -> [Binding<'a>; 5] {
+        binding_array! {
+            depth_map: &maps.receivers.texture,
             patches: &self.patches,
             tile_tops: &self.tile_tops,
             ssm: &self.uniform,
             totals: &self.totals,
         }
-        .to_vec()
-    }
-
-    /// Patches of the last frame, those that float16 loses, and the widest penumbra in texels of its level.
-    pub async fn stats(&self, gpu: &Gpu) -> Result<Vec<(&'static str, f64)>, Error> {
-        let bytes = read_buffer(gpu, &self.totals).await?;
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
-        let (patches, lost, widest) = (words[32], words[33], f32::from_bits(words[34]));
-        Ok(vec![("patches", patches.into()), ("float16 loses", lost.into()), ("widest penumbra", widest.into())])
-    }
-
-    /// For looking at.
-    pub fn inner_picture(&self) -> InnerPicture {
-        let help = "covered part of each micro-patch and its inverse distance, 1/metres; a level of the map a level";
-        InnerPicture::of_texture("micro-patches", help, &self.patches)
-    }
-
-    /// GPU memory by pass.
-    pub fn memory(&self) -> Vec<Memory> {
-        let own = self.patches.bytes() + self.tile_tops.bytes() + self.rising.bytes() + self.totals.size();
-        let bounds = self.receiver_bounds.iter().map(DepthPyramid::memory);
-        bounds.chain([Memory::new("micro-patches", own)]).collect()
     }
 }

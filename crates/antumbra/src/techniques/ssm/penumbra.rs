@@ -1,4 +1,4 @@
-//! The part of the light that a micro-patch hides, against the paper's own construction [Atty 2006, sections 3.3 and 3.4].
+//! The fraction of the light that a micro-patch hides, against the paper's own construction [Atty 2006, sections 3.3 and 3.4].
 
 use crate::testing::{Random, Worst, evaluate};
 
@@ -23,7 +23,7 @@ struct Axis {
 }
 
 impl Axis {
-    /// The part of the light's edge that the patch hides, by projecting the patch back to the light.
+    /// The fraction of the light's edge that the patch hides, by projecting the patch back to the light.
     fn hidden(&self) -> f64 {
         let back = |p: f64| self.receiver + (p - self.receiver) * self.receiver_z / (self.receiver_z - self.patch_z);
         let (low, high) = (back(self.patch_low), back(self.patch_high));
@@ -74,7 +74,7 @@ fn a_patch_hides_what_its_projection_to_the_light_covers() {
     }
     let mut worst = Worst::default();
     for ((x, y, narrowest), out) in exact.iter().zip(evaluate(KERNEL, &input, 7, 1)) {
-        // Single precision tells places to 2^-14 of a texel.
+        // Single precision resolves positions to 2^-14 of a texel.
         let allowed = 1e-3 / narrowest.max(0.5) * 10.0 + 1e-4;
         let hidden = x.hidden() * y.hidden();
         let relative = (f64::from(out[0]) - hidden).abs() / if *narrowest < 0.05 { 20.0 } else { 1.0 };

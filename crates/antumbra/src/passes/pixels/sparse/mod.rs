@@ -1,107 +1,70 @@
-//! Looks at few of the pixels in penumbra first, and at the others only where their neighbours do not tell them: where
-//! shadows are soft, a sixteenth of the pixels is enough [Guennebaud 2007, section 5].
+//! Sparse shading: a coarse grid of penumbra pixels is shaded first; the others are interpolated, or shaded where their
+//! neighbours do not determine them. A sixteenth of the pixels suffices in soft shadows [Guennebaud 2007, section 5].
 
-use crate::input::frame::{Frame, FrameUniform};
-use crate::passes::pixels::classify::PenumbraList;
-use crate::gpu::recorder::{Recorder, Work, dispatch};
-use crate::gpu::resources::{UniformArray, storage_buffer};
-use crate::gpu::shader::ShaderKey;
-use crate::technique::Memory;
 use crate::error::Error;
-use crate::gpu::device::Gpu;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::BufferDescription;
+use crate::gpu::shader::ShaderKey;
+use crate::input::frame::Frame;
+use crate::passes::pixels::classify::PenumbraList;
 use crate::{bindings, gpu_struct};
 
 gpu_struct! {
-    /// Which pixels are chosen.
+    /// The pixels of a stage.
     pub(crate) struct StageUniform {
-        /// Pixels from the chosen ones to those that tell of them, or from one to the next for corners.
+        /// Pixels from one to its neighbours that are shaded before; for corners, from one to the next.
         step: u32,
-        /// 0 corners of squares, 1 their middles, 2 the middles of their edges.
+        /// 0 corners of squares, 1 their centres, 2 the midpoints of their edges.
         kind: u32,
-        /// Over the distance of `step` pixels the visibility must not be able to change by more.
+        /// Largest change of visibility over `step` pixels for interpolation.
         most_change: f32,
-        /// What two pairs of opposite neighbours tell must not differ by more.
+        /// Largest difference of the two interpolations between opposite neighbours.
         most_difference: f32,
     }
 }
 
-/// The pixels that a stage looks at, and what is known of those before.
-pub struct SparsePixels {
-    list: PenumbraList,
-    /// `f32` a pixel: how fast the visibility may change there for each pixel of distance; written with the visibility
-    /// by who looks at a pixel, never 0 then.
-    pub sharpness: wgpu::Buffer,
-    stages: UniformArray<StageUniform>,
-    spacing: u32,
-}
-
-/// Over the distance to its neighbours a pixel's visibility must not be able to change by more than this for them to
-/// tell it, and what they tell must agree to within the second.
+/// Largest change of visibility over the distance to the neighbours, and largest difference of the interpolations
+/// between them, for a pixel to be interpolated.
 const MOST_CHANGE: f32 = 0.5;
 const MOST_DIFFERENCE: f32 = 0.01;
 
-impl SparsePixels {
-    /// For pictures of this size; `spacing` is that of the pixels that are looked at first, a power of two.
-    pub fn new(gpu: &Gpu, size: [u32; 2], spacing: u32) -> SparsePixels {
-        let stage =
-            |step, kind| StageUniform { step, kind, most_change: MOST_CHANGE, most_difference: MOST_DIFFERENCE };
-        let halves = std::iter::successors(Some(spacing / 2), |step| Some(step / 2)).take_while(|step| *step > 0);
-        let between = halves.flat_map(|step| [stage(step, 1), stage(step, 2)]);
-        let stages: Vec<_> = std::iter::once(stage(spacing, 0)).chain(between).collect();
-        let pixels = u64::from(size[0]) * u64::from(size[1]);
-        SparsePixels {
-            list: PenumbraList::new(gpu, size),
-            sharpness: storage_buffer(gpu, "sharpness", 4 * pixels),
-            stages: UniformArray::new(gpu, "stages", &stages),
-            spacing,
-        }
+/// Fills the visibility of all pixels of a list. `spacing` is that of the coarse grid, in pixels, a power of two.
+///
+/// `shade` is called for each stage with the list of its pixels and with the buffer `sharpness`, an `f32` per pixel of
+/// the image: an upper bound of the change of visibility per pixel. It records passes that write visibility and sharpness
+/// (more than 0) of the listed pixels.
+pub fn shade_sparsely(
+    recorder: &mut Recorder,
+    frame: &Frame,
+    all: &PenumbraList,
+    spacing: u32,
+    mut shade: impl FnMut(&mut Recorder, &wgpu::Buffer, &wgpu::Buffer) -> Result<(), Error>,
+) -> Result<(), Error> {
+    let key = ShaderKey::new("passes::pixels::sparse::split");
+    let [begin, split, finish] = ["begin", "split", "finish"].map(|entry| recorder.gpu.compute_pipeline(&key, entry));
+    let (begin, split, finish) = (begin?, split?, finish?);
+    let pixels = u64::from(frame.size[0]) * u64::from(frame.size[1]);
+    let chosen = recorder.buffer("chosen pixels", BufferDescription::new(16 + 8 * pixels));
+    let sharpness = recorder.buffer("sharpness", BufferDescription::new(4 * pixels).cleared());
+    let stage = |step, kind| StageUniform { step, kind, most_change: MOST_CHANGE, most_difference: MOST_DIFFERENCE };
+    let halves = std::iter::successors(Some(spacing / 2), |step| Some(step / 2)).take_while(|step| *step > 0);
+    let refinements = halves.flat_map(|step| [stage(step, 1), stage(step, 2)]);
+    let stages: Vec<_> = std::iter::once(stage(spacing, 0)).chain(refinements).collect();
+    let uniforms = recorder.uniforms("stages", stages.iter().copied());
+    for i in 0..stages.len() as u32 {
+        let stage = uniforms.at(i);
+        let own = bindings! {
+            penumbra_pixels: &all.buffer,
+            chosen: &chosen,
+            sharpness: &sharpness,
+            stage: &stage,
+        };
+        let set: [&[_]; 2] = [&frame.bindings(), own];
+        let one = Work::Groups([1, 1, 1]);
+        recorder.compute("choice of pixels", &begin, &set, one)?;
+        recorder.compute("choice of pixels", &split, &set, Work::Indirect(&all.buffer, 0))?;
+        recorder.compute("choice of pixels", &finish, &set, one)?;
+        shade(recorder, &chosen, &sharpness)?;
     }
-
-    /// Makes one in `slot` unless one for such a picture is there.
-    pub fn ensure<'a>(slot: &'a mut Option<SparsePixels>, gpu: &Gpu, size: [u32; 2], spacing: u32) -> &'a SparsePixels {
-        if !slot.as_ref().is_some_and(|s| s.list.size() == size && s.spacing == spacing) {
-            *slot = Some(SparsePixels::new(gpu, size, spacing));
-        }
-        slot.as_ref().expect("just made")
-    }
-
-    /// Has `look` called with the list of each stage, until all pixels of `all` have a visibility. What it records
-    /// writes visibility and sharpness of the pixels in the list.
-    pub fn record(
-        &self,
-        recorder: &mut Recorder,
-        frame: &Frame,
-        all: &PenumbraList,
-        mut look: impl FnMut(&mut Recorder, &PenumbraList),
-    ) -> Result<(), Error> {
-        let key = ShaderKey::new("passes::pixels::sparse::split");
-        let split = recorder.gpu.compute_pipeline(&key, "split")?;
-        let finish = recorder.gpu.compute_pipeline(&key, "finish")?;
-        recorder.encoder.clear_buffer(&self.sharpness, 0, None);
-        for i in 0..self.stages.len() {
-            let stage = self.stages.at(i);
-            recorder.encoder.clear_buffer(&self.list.buffer, 0, Some(16));
-            let set = frame.bindings(bindings! {
-                penumbra_pixels: &all.buffer,
-                chosen: &self.list.buffer,
-                sharpness: &self.sharpness,
-                stage: &stage,
-            });
-            recorder.compute_pass("choice of pixels", |gpu, pass| {
-                pass.set_pipeline(&split.pipeline);
-                pass.set_bind_group(0, &split.bind_group(gpu, 0, &set), &[]);
-                dispatch(pass, &split, Work::Indirect(&all.buffer, 0));
-                pass.set_pipeline(&finish.pipeline);
-                pass.set_bind_group(0, &finish.bind_group(gpu, 0, &set), &[]);
-                pass.dispatch_workgroups(1, 1, 1);
-            });
-            look(recorder, &self.list);
-        }
-        Ok(())
-    }
-
-    /// GPU memory by pass.
-    pub fn memory(&self) -> Memory {
-        Memory::new("choice of pixels", self.list.buffer.size() + self.sharpness.size())
-    }
+    Ok(())
 }

@@ -1,4 +1,4 @@
-//! What makes a picture wrong, told before it is.
+//! Warnings of faults that an image will have.
 
 use super::SsmSettings;
 use super::settings::Format;
@@ -11,18 +11,18 @@ pub fn largest_float16_q(receiver_q: f32, tan_half: f32, size: f32, light: f32) 
     receiver_q + 64.0 * tan_half / (size * light)
 }
 
-/// What there is to say about a frame: one sentence each.
+/// The warnings of a frame, a sentence each.
 pub(super) fn of_frame(frame: &Frame, settings: &SsmSettings) -> Vec<String> {
     let bounds = frame.casters.occluder_bounds();
     if bounds.min.x > bounds.max.x {
-        let none = "ssm: nothing casts, since nothing is above another surface (`Role::Caster`): all receivers are lit";
+        let none = "ssm: nothing casts, as no surface is above another one (`Role::Caster`): all receivers are lit";
         return if frame.casters.triangle_count() > 0 { vec![none.to_owned()] } else { Vec::new() };
     }
     let corners = bounds.corners().map(|c| frame.light.light_from_world(c));
     let nearest = corners.iter().fold(f32::INFINITY, |z, c| z.min(c.z)).max(frame.frustum.near);
     let [_, farthest_receiver] = frame.frustum.receivers;
-    let mut said = Vec::new();
-    // On a hierarchy a window is up to twice as wide as `window` patches, over the nearest receiver.
+    let mut warnings = Vec::new();
+    // With a hierarchy a window is up to twice as wide as `window` patches, over the nearest receiver.
     let is_flat = !settings.hierarchy || settings.window >= 16;
     if settings.format == Format::Float16 && is_flat {
         let limit = |axis: usize| {
@@ -31,7 +31,7 @@ pub(super) fn of_frame(frame: &Frame, settings: &SsmSettings) -> Vec<String> {
         };
         // The paper's condition is for squares; the light may be longer than wide.
         if 1.0 / nearest > limit(0).max(limit(1)) {
-            said.push(format!(
+            warnings.push(format!(
                 "ssm: with format=float16 patches nearer to the light than {:.3} m may be lost [Atty 2006, equation \
                  4]; a smaller `map`, hierarchy=true or format=float32 keeps them",
                 1.0 / limit(0).max(limit(1))
@@ -41,10 +41,10 @@ pub(super) fn of_frame(frame: &Frame, settings: &SsmSettings) -> Vec<String> {
     let beyond = |c: &glam::Vec3| c.z > 0.0 && (c.truncate() / c.z).abs().cmpgt(frame.frustum.tan_half * 1.02).any();
     if frame.light.shadow_fov_deg.is_some() && corners.iter().any(beyond) {
         let degrees = 2.0 * frame.frustum.tan_half.max_element().atan().to_degrees();
-        said.push(format!(
-            "ssm: occluders reach out of the map's {degrees:.0} degrees and cast no shadow there: a wider \
-             `shadow_fov_deg`, or none, holds them"
+        warnings.push(format!(
+            "ssm: occluders extend beyond the map's {degrees:.0} degrees and cast no shadow from there: set a wider \
+             `shadow_fov_deg`, or none"
         ));
     }
-    said
+    warnings
 }
