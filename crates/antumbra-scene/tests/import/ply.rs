@@ -120,8 +120,10 @@ fn claims_that_the_file_cannot_hold_are_refused_at_once() {
             let file = format!("ply\nformat {format} 1.0\n{header}end_header\n0 0 0");
             assert_says(parse(file.as_bytes()), &["a.ply", "items needs", "damaged or cut off"]);
         }
-        let empty = format!("ply\nformat {format} 1.0\nelement nothing 18446744073709551615\nend_header\n");
-        assert_says(parse(empty.as_bytes()), &["no triangles"]);
+        for element in ["nothing", "face", "tristrips"] {
+            let empty = format!("ply\nformat {format} 1.0\nelement {element} 18446744073709551615\nend_header\n");
+            assert_says(parse(empty.as_bytes()), &["no triangles"]);
+        }
     }
     let list = format!(
         "ply\nformat binary_little_endian 1.0\n{VERTICES}element face 1\nproperty list uint int vertex_indices\nend_header\n"

@@ -4,17 +4,19 @@ use super::statements::text_after;
 use crate::import::{ReadFile, picture};
 use crate::{Material, Texture, Wrap};
 use glam::Vec3;
-use image::RgbaImage;
+use image::{Rgba, RgbaImage};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Materials by name.
 pub(super) type Library = HashMap<String, Material>;
 
-/// A surface that lets through more than this counts as a hole: a shadow is cast or it is not.
+/// Alpha below which a surface is a hole: a shadow is cast or it is not.
 const CUTOFF: f32 = 0.5;
 
-/// What the file says of one material.
+const WHITE: Rgba<u8> = Rgba([255; 4]);
+
+/// Statements on one material.
 #[derive(Default)]
 struct Entry {
     name: String,
@@ -24,21 +26,21 @@ struct Entry {
     opacity_map: Option<Map>,
 }
 
-/// A texture's file and the options that matter.
+/// Path of a texture and the only option of `map_*` that is read.
 #[derive(Clone, PartialEq)]
 struct Map {
     path: String,
     clamp: bool,
 }
 
-/// Reads the libraries that an OBJ file names. What cannot be read is a warning and left out.
+/// Reads the libraries that an OBJ file names. A file that cannot be read is a warning.
 pub(super) fn load(names: &[String], obj: &str, read_file: &mut ReadFile) -> Library {
     let mut library = Library::new();
     for names in names {
         for (path, bytes) in find(names, obj, read_file) {
-            let mut pictures = Pictures { mtl: &path, read_file, known: HashMap::new() };
+            let mut textures = Textures { mtl: &path, read_file, known: HashMap::new() };
             for entry in entries(&bytes) {
-                let material = pictures.material(&entry);
+                let material = textures.material(&entry);
                 library.entry(entry.name).or_insert(material);
             }
         }
@@ -46,22 +48,17 @@ pub(super) fn load(names: &[String], obj: &str, read_file: &mut ReadFile) -> Lib
     library
 }
 
-/// The files behind one `mtllib`: one whose name may hold spaces, or several.
+/// Files of one `mtllib`: one whose name may hold spaces, or several.
 fn find(names: &str, obj: &str, read_file: &mut ReadFile) -> Vec<(String, Vec<u8>)> {
     let whole = with_slashes(names);
-    match read_file(&whole) {
-        Ok(bytes) => return vec![(whole, bytes)],
-        Err(error) if !names.contains(char::is_whitespace) => {
-            tracing::warn!("{obj}: cannot read the material library {whole}: {error}; its materials are grey");
-            return Vec::new();
-        }
-        Err(_) => {}
+    if let Ok(bytes) = read_file(&whole) {
+        return vec![(whole, bytes)];
     }
     let mut found = Vec::new();
-    for path in names.split_whitespace().map(with_slashes) {
-        match read_file(&path) {
-            Ok(bytes) => found.push((path, bytes)),
-            Err(error) => tracing::warn!("{obj}: cannot read the material library {path}: {error}"),
+    for path in whole.split_whitespace() {
+        match read_file(path) {
+            Ok(bytes) => found.push((path.to_string(), bytes)),
+            Err(error) => tracing::warn!("{obj}: cannot read the material library {path}: {error}; it is left out"),
         }
     }
     found
@@ -102,7 +99,7 @@ fn entries(bytes: &[u8]) -> Vec<Entry> {
     entries
 }
 
-/// Options, then a file name that may hold spaces.
+/// Arguments of `map_*`: options, then a file name that may hold spaces.
 fn map(text: &str) -> Option<Map> {
     let (mut rest, mut clamp) = (text.trim(), false);
     while rest.starts_with('-') {
@@ -126,14 +123,14 @@ fn map(text: &str) -> Option<Map> {
     (!rest.is_empty()).then(|| Map { path: with_slashes(rest), clamp })
 }
 
-/// Reads the pictures of one library.
-struct Pictures<'a, 'r> {
+/// Reads the textures of one library, each once.
+struct Textures<'a, 'r> {
     mtl: &'a str,
     read_file: &'a mut ReadFile<'r>,
     known: HashMap<String, Option<Arc<RgbaImage>>>,
 }
 
-impl Pictures<'_, '_> {
+impl Textures<'_, '_> {
     fn material(&mut self, entry: &Entry) -> Material {
         let map = entry.color_map.as_ref().or(entry.opacity_map.as_ref());
         let pixels = self.pixels(entry);
@@ -156,25 +153,19 @@ impl Pictures<'_, '_> {
         }
     }
 
-    /// Colour from one picture, alpha from the other.
+    /// Colour of one texture with the alpha of the other.
     fn pixels(&mut self, entry: &Entry) -> Option<RgbaImage> {
         let color = entry.color_map.as_ref().and_then(|m| self.read(&m.path));
         let opacity = entry.opacity_map.as_ref().and_then(|m| self.read(&m.path));
-        let Some(opacity) = opacity else {
-            let mut color = RgbaImage::clone(&*color?);
-            color.pixels_mut().for_each(|p| p[3] = 255);
-            return Some(color);
-        };
-        let mut pixels = match color {
-            Some(color) => RgbaImage::clone(&color),
-            None => RgbaImage::from_pixel(opacity.width(), opacity.height(), image::Rgba([255; 4])),
-        };
-        // An opacity map is a grey picture, or a picture whose alpha channel says it.
-        let channel = if opacity.pixels().any(|p| p[3] < 255) { 3 } else { 0 };
-        let (width, height) = pixels.dimensions();
+        let (width, height) = color.as_ref().or(opacity.as_ref())?.dimensions();
+        let mut pixels = color.map_or_else(|| RgbaImage::from_pixel(width, height, WHITE), |c| RgbaImage::clone(&c));
+        // An opacity map is grey, or has its opacity in the alpha channel.
+        let channel = if opacity.iter().any(|o| o.pixels().any(|p| p[3] < 255)) { 3 } else { 0 };
+        let scaled = |i: u32, from: u32, to: u32| (u64::from(i) * u64::from(to) / u64::from(from)) as u32;
         for (x, y, pixel) in pixels.enumerate_pixels_mut() {
-            let same = |i: u32, from: u32, to: u32| (u64::from(i) * u64::from(to) / u64::from(from)) as u32;
-            pixel[3] = opacity.get_pixel(same(x, width, opacity.width()), same(y, height, opacity.height()))[channel];
+            pixel[3] = opacity
+                .as_ref()
+                .map_or(255, |o| o.get_pixel(scaled(x, width, o.width()), scaled(y, height, o.height()))[channel]);
         }
         Some(pixels)
     }
@@ -183,18 +174,13 @@ impl Pictures<'_, '_> {
         if let Some(known) = self.known.get(path) {
             return known.clone();
         }
-        // A texture's path is relative to its library.
+        // Paths are relative to the library's folder.
         let folder = self.mtl.rfind('/').map_or("", |i| &self.mtl[..=i]);
         let full = if path.starts_with('/') { path.to_string() } else { format!("{folder}{path}") };
         let read = (self.read_file)(&full).map_err(|e| e.to_string()).and_then(|bytes| picture::decode(&bytes));
-        let picture = match read {
-            Ok(picture) => Some(Arc::new(picture)),
-            Err(error) => {
-                tracing::warn!("{}: cannot read the texture {full}: {error}; it is left out", self.mtl);
-                None
-            }
-        };
-        self.known.insert(path.to_string(), picture.clone());
-        picture
+        let left_out = |error| tracing::warn!("{}: cannot read the texture {full}: {error}; it is left out", self.mtl);
+        let texture = read.map_err(left_out).ok().map(Arc::new);
+        self.known.insert(path.to_string(), texture.clone());
+        texture
     }
 }

@@ -1,54 +1,61 @@
-//! The lines of an OBJ file, read and checked.
+//! Statements of an OBJ file, read and checked.
 
 use crate::{Place, SceneError};
 use glam::{Vec2, Vec3};
-use std::borrow::Cow;
-use std::collections::HashMap;
+use indexmap::IndexSet;
+use std::ops::Range;
 
-/// Stands for "no texture coordinate".
-pub(super) const NONE: u32 = u32::MAX;
-
-/// What an OBJ file says; every index is in range.
+/// Geometry of an OBJ file; every index is in range.
 #[derive(Default)]
 pub(super) struct Statements {
     pub positions: Vec<Vec3>,
     pub uvs: Vec<Vec2>,
-    /// Position and texture coordinate of every corner of every face, one face after the other.
-    pub corners: Vec<[u32; 2]>,
+    /// Corners of all faces, one face after the other.
+    pub corners: Vec<Corner>,
     pub faces: Vec<Face>,
     /// Names after `usemtl`; the first is "" for faces before any.
-    pub materials: Vec<String>,
-    /// What follows `mtllib`, once a line.
+    pub materials: IndexSet<String>,
+    /// Text after each `mtllib`.
     pub libraries: Vec<String>,
 }
 
-/// A polygon.
+/// Corner of a face: indices into [`Statements::positions`] and [`Statements::uvs`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct Corner {
+    pub position: u32,
+    pub uv: Option<u32>,
+}
+
+/// Polygon with three corners or more.
 pub(super) struct Face {
-    /// One past its last corner in [`Statements::corners`]; it begins where the face before ends.
-    pub end: usize,
+    /// Range in [`Statements::corners`].
+    pub corners: Range<usize>,
     /// Index into [`Statements::materials`].
     pub material: usize,
     line: usize,
 }
 
-/// Reads all lines.
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<Statements, SceneError> {
-    let mut reader = Reader {
-        name,
-        line: 0,
-        out: Statements { materials: vec![String::new()], ..Statements::default() },
-        material: 0,
-        numbers: HashMap::from([(String::new(), 0)]),
-        normals: 0,
-        skipped: [None; 3],
-    };
-    let mut lines = bytes.split(|&b| b == b'\n');
-    while let Some(first) = lines.next() {
-        reader.line += 1;
-        let (line, more) = joined(first, &mut lines);
-        reader.statement(&line)?;
-        reader.line += more;
+    let out = Statements { materials: IndexSet::from([String::new()]), ..Statements::default() };
+    let mut reader = Reader { name, line: 0, out, material: 0, normals: 0, skipped: [None; 3] };
+    // A statement goes on after a backslash at the end of its line.
+    let mut joined = Vec::new();
+    for (number, line) in (1..).zip(bytes.split(|&b| b == b'\n')) {
+        if joined.is_empty() {
+            reader.line = number;
+        }
+        let line = line.trim_ascii_end();
+        if let Some(start) = line.strip_suffix(b"\\") {
+            joined.extend([start, b" "].concat());
+        } else if joined.is_empty() {
+            reader.statement(line)?;
+        } else {
+            joined.extend(line);
+            reader.statement(&joined)?;
+            joined.clear();
+        }
     }
+    reader.statement(&joined)?;
     reader.check_indices()?;
     for (what, line) in SKIPPED.iter().zip(reader.skipped) {
         if let Some(line) = line {
@@ -60,25 +67,11 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Statements, SceneError> {
 
 const SKIPPED: [&str; 3] = ["points and lines", "free-form curves and surfaces", "faces with fewer than 3 corners"];
 
-/// A line together with those that follow it after a backslash, and how many those are.
-fn joined<'a>(first: &'a [u8], lines: &mut impl Iterator<Item = &'a [u8]>) -> (Cow<'a, [u8]>, usize) {
-    let (mut line, mut more) = (Cow::Borrowed(first.trim_ascii_end()), 0);
-    while let Some(start) = line.strip_suffix(b"\\") {
-        let mut longer = start.to_vec();
-        longer.push(b' ');
-        let Some(next) = lines.next() else { return (longer.into(), more) };
-        longer.extend_from_slice(next.trim_ascii_end());
-        (line, more) = (longer.into(), more + 1);
-    }
-    (line, more)
-}
-
 struct Reader<'a> {
     name: &'a str,
     line: usize,
     out: Statements,
     material: usize,
-    numbers: HashMap<String, usize>,
     normals: usize,
     /// First line of each kind of [`SKIPPED`].
     skipped: [Option<usize>; 3],
@@ -98,7 +91,7 @@ impl Reader<'_> {
             }
             b"vn" => self.normals += 1,
             b"f" | b"fo" => self.face(words)?,
-            b"usemtl" => self.use_material(text_after(line, keyword)),
+            b"usemtl" => self.material = self.out.materials.insert_full(text_after(line, keyword)).0,
             b"mtllib" => self.out.libraries.push(text_after(line, keyword)),
             b"p" | b"l" => self.skip(0),
             b"curv" | b"curv2" | b"surf" => self.skip(1),
@@ -132,14 +125,6 @@ impl Reader<'_> {
         number.ok_or_else(|| self.malformed(format!("{:?} is not a number", String::from_utf8_lossy(word))))
     }
 
-    fn use_material(&mut self, name: String) {
-        let next = self.out.materials.len();
-        self.material = *self.numbers.entry(name).or_insert_with_key(|name| {
-            self.out.materials.push(name.clone());
-            next
-        });
-    }
-
     fn face<'w>(&mut self, words: impl Iterator<Item = &'w [u8]>) -> Result<(), SceneError> {
         let start = self.out.corners.len();
         for word in words {
@@ -150,19 +135,20 @@ impl Reader<'_> {
             self.out.corners.truncate(start);
             self.skip(2);
         } else {
-            self.out.faces.push(Face { end: self.out.corners.len(), material: self.material, line: self.line });
+            let corners = start..self.out.corners.len();
+            self.out.faces.push(Face { corners, material: self.material, line: self.line });
         }
         Ok(())
     }
 
-    /// A corner: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
-    fn corner(&self, word: &[u8]) -> Result<[u32; 2], SceneError> {
+    /// Corner of a face: `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    fn corner(&self, word: &[u8]) -> Result<Corner, SceneError> {
         let mut parts = word.split(|&b| b == b'/');
         let position = parts.next().unwrap_or_default();
         let position = self.index(position, word, self.out.positions.len(), "vertices")?;
         let uv = match parts.next() {
-            None | Some(b"") => NONE,
-            Some(part) => self.index(part, word, self.out.uvs.len(), "texture coordinates")?,
+            None | Some(b"") => None,
+            Some(part) => Some(self.index(part, word, self.out.uvs.len(), "texture coordinates")?),
         };
         match parts.next() {
             None | Some(b"") => {}
@@ -171,31 +157,29 @@ impl Reader<'_> {
         if parts.next().is_some() {
             return Err(self.not_a_corner(word));
         }
-        Ok([position, uv])
+        Ok(Corner { position, uv })
     }
 
-    /// An index from 0. One that counts back from the last is resolved; whether one that counts from the first is in
-    /// range is known at the end of the file only, see [`Reader::check_indices`].
+    /// Index from 0. The range of an index that counts from the first is checked at the end of the file, since faces
+    /// may precede vertices.
     fn index(&self, part: &[u8], word: &[u8], count: usize, what: &'static str) -> Result<u32, SceneError> {
         let text = std::str::from_utf8(part).map_err(|_| self.not_a_corner(word))?;
         let index: i64 = text.parse().map_err(|_| self.not_a_corner(word))?;
         let from_zero = if index < 0 { count as i64 + index } else { index - 1 };
-        let valid = u32::try_from(from_zero).ok().filter(|&i| i != NONE);
-        valid.ok_or_else(|| self.out_of_range(self.line, index, count, what))
+        u32::try_from(from_zero).map_err(|_| self.out_of_range(self.line, index, count, what))
     }
 
     fn check_indices(&self) -> Result<(), SceneError> {
-        let counts = [(self.out.positions.len(), "vertices"), (self.out.uvs.len(), "texture coordinates")];
-        let mut start = 0;
-        for face in &self.out.faces {
-            for corner in &self.out.corners[start..face.end] {
-                for (&index, (count, what)) in corner.iter().zip(counts) {
-                    if index as usize >= count && index != NONE {
-                        return Err(self.out_of_range(face.line, i64::from(index) + 1, count, what));
-                    }
-                }
+        let Statements { positions, uvs, corners, faces, .. } = &self.out;
+        for face in faces {
+            let check = |index: u32, count: usize, what| {
+                let out_of_range = || self.out_of_range(face.line, i64::from(index) + 1, count, what);
+                if (index as usize) < count { Ok(()) } else { Err(out_of_range()) }
+            };
+            for corner in &corners[face.corners.clone()] {
+                check(corner.position, positions.len(), "vertices")?;
+                corner.uv.map_or(Ok(()), |uv| check(uv, uvs.len(), "texture coordinates"))?;
             }
-            start = face.end;
         }
         Ok(())
     }
@@ -217,8 +201,8 @@ impl Reader<'_> {
     }
 }
 
-/// What follows a keyword, which may hold spaces.
+/// Text after the keyword at the start of a line; it may hold spaces.
 pub(super) fn text_after(line: &[u8], keyword: &[u8]) -> String {
-    let rest = line.trim_ascii_start().strip_prefix(keyword).unwrap_or_default();
-    String::from_utf8_lossy(rest.trim_ascii()).into_owned()
+    let text = line.trim_ascii_start().strip_prefix(keyword).unwrap_or_default();
+    String::from_utf8_lossy(text.trim_ascii()).into_owned()
 }

@@ -1,8 +1,8 @@
-//! The header, which says what follows and how it is written.
+//! The header: the encoding of the body, and its elements with their properties.
 
 use crate::{Place, SceneError};
 
-/// How numbers are written.
+/// Encoding of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -10,7 +10,7 @@ pub(super) enum Encoding {
     BigEndian,
 }
 
-/// Type of a number.
+/// Scalar type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     I8,
@@ -24,8 +24,8 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    fn parse(word: &str) -> Option<Kind> {
-        Some(match word {
+    fn parse(word: &str) -> Result<Kind, String> {
+        Ok(match word {
             "char" | "int8" => Kind::I8,
             "uchar" | "uint8" => Kind::U8,
             "short" | "int16" => Kind::I16,
@@ -34,7 +34,7 @@ impl Kind {
             "uint" | "uint32" => Kind::U32,
             "float" | "float32" => Kind::F32,
             "double" | "float64" => Kind::F64,
-            _ => return None,
+            _ => return Err(format!("{word:?} is not a type of PLY")),
         })
     }
 
@@ -53,33 +53,22 @@ impl Kind {
     }
 }
 
-/// A value or a list of values that every item of an element has.
+/// Property of every item of an element: a scalar, or a list where there is a type of its `length`.
 #[derive(Debug)]
-pub(super) enum Property {
-    Scalar { kind: Kind, name: String },
-    List { length: Kind, item: Kind, name: String },
+pub(super) struct Property {
+    pub name: String,
+    pub kind: Kind,
+    pub length: Option<Kind>,
 }
 
 impl Property {
-    pub fn is_scalar(&self, wanted: &str) -> bool {
-        matches!(self, Property::Scalar { name, .. } if name == wanted)
-    }
-
-    /// Bytes that it takes at least in the binary encodings.
-    pub fn least_size(&self) -> usize {
-        match self {
-            Property::Scalar { kind, .. } => kind.size(),
-            Property::List { length, .. } => length.size(),
-        }
+    /// True for the list of a face's vertices; both spellings are common.
+    pub fn holds_corners(&self) -> bool {
+        self.length.is_some() && matches!(self.name.as_str(), "vertex_indices" | "vertex_index")
     }
 }
 
-/// True for the name of the list of a face's corners: the two spellings are equally common.
-pub(super) fn holds_corners(name: &str) -> bool {
-    name == "vertex_indices" || name == "vertex_index"
-}
-
-/// A kind of item and how many of it there are.
+/// Element: `count` items that all have the same properties.
 #[derive(Debug)]
 pub(super) struct Element {
     pub name: String,
@@ -87,79 +76,81 @@ pub(super) struct Element {
     pub properties: Vec<Property>,
 }
 
-/// What a file holds.
 #[derive(Debug)]
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Where the body begins.
+    /// Offset of the body.
     pub bytes: usize,
-    /// Lines of the header.
+    /// Lines before the body.
     pub lines: usize,
 }
 
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<Header, SceneError> {
-    let fail = |line: usize, problem: String| SceneError::Malformed {
-        file: name.to_string(),
-        place: Place::Line(line),
-        problem,
+    let malformed = |line: usize, problem: &str| {
+        let (file, place) = (name.to_string(), Place::Line(line));
+        SceneError::Malformed { file, place, problem: problem.to_string() }
     };
-    let (mut encoding, mut elements, mut at) = (None, Vec::new(), 0);
-    for (i, line) in bytes.split_inclusive(|&b| b == b'\n').enumerate() {
-        let number = i + 1;
-        at += line.len();
+    let (mut encoding, mut elements, mut at, mut number) = (None, Vec::new(), 0, 0);
+    for line in bytes.split_inclusive(|&b| b == b'\n') {
+        (at, number) = (at + line.len(), number + 1);
         if number == 1 {
             if line.trim_ascii() != b"ply" {
-                return Err(fail(1, "a PLY file begins with a line that says `ply`".to_string()));
+                return Err(malformed(1, "a PLY file begins with a line that says `ply`"));
             }
             continue;
         }
-        // Comments may be in any encoding; what counts is ASCII.
+        // Comments may be in any encoding; keywords and names are ASCII.
         let line = String::from_utf8_lossy(line);
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
-        match words[..] {
-            [] | ["comment" | "obj_info", ..] => {}
-            ["format", format, _] => encoding = Some(read_format(format).map_err(|problem| fail(number, problem))?),
-            ["element", name, count] => {
-                let count = count.parse().map_err(|_| fail(number, format!("{count:?} is not a count")))?;
-                elements.push(Element { name: name.to_string(), count, properties: Vec::new() });
-            }
-            ["property", ref words @ ..] => {
-                let property = read_property(words).map_err(|problem| fail(number, problem))?;
-                let orphan = || fail(number, "there is no element before this property".to_string());
-                elements.last_mut().ok_or_else(orphan)?.properties.push(property);
-            }
-            ["end_header"] => {
-                let encoding = encoding.ok_or_else(|| fail(number, "the header has no `format` line".to_string()))?;
-                return Ok(Header { encoding, elements, bytes: at, lines: number });
-            }
-            _ => return Err(fail(number, format!("{:?} does not belong into a PLY header", line.trim()))),
+        if words == ["end_header"] {
+            let encoding = encoding.ok_or_else(|| malformed(number, "the header has no `format` line"))?;
+            return Ok(Header { encoding, elements, bytes: at, lines: number });
         }
+        statement(&words, &mut encoding, &mut elements).map_err(|problem| malformed(number, &problem))?;
     }
-    let lines = bytes.split_inclusive(|&b| b == b'\n').count();
-    Err(fail(lines.max(1), "the header has no `end_header`; the file is not PLY or cut off".to_string()))
+    Err(malformed(number.max(1), "the header has no `end_header`; the file is not PLY or cut off"))
 }
 
-fn read_format(format: &str) -> Result<Encoding, String> {
-    match format {
-        "ascii" => Ok(Encoding::Ascii),
-        "binary_little_endian" => Ok(Encoding::LittleEndian),
-        "binary_big_endian" => Ok(Encoding::BigEndian),
-        _ => Err(format!("format {format:?} is not ascii, binary_little_endian or binary_big_endian")),
-    }
-}
-
-fn read_property(words: &[&str]) -> Result<Property, String> {
-    let kind = |word: &str| Kind::parse(word).ok_or_else(|| format!("{word:?} is not a type of PLY"));
+fn statement(words: &[&str], encoding: &mut Option<Encoding>, elements: &mut Vec<Element>) -> Result<(), String> {
     match *words {
-        ["list", length, item, name] => {
-            let (length, item, name) = (kind(length)?, kind(item)?, name.to_string());
-            if !length.is_integer() || (holds_corners(&name) && !item.is_integer()) {
-                return Err(format!("the list {name:?} needs whole numbers for its length and its indices"));
-            }
-            Ok(Property::List { length, item, name })
+        [] | ["comment" | "obj_info", ..] => {}
+        ["format", format, _] => {
+            *encoding = Some(match format {
+                "ascii" => Encoding::Ascii,
+                "binary_little_endian" => Encoding::LittleEndian,
+                "binary_big_endian" => Encoding::BigEndian,
+                _ => {
+                    return Err(format!("format {format:?} is not ascii, binary_little_endian or binary_big_endian"));
+                }
+            });
         }
-        [word, name] => Ok(Property::Scalar { kind: kind(word)?, name: name.to_string() }),
-        _ => Err("a property reads `property TYPE NAME` or `property list TYPE TYPE NAME`".to_string()),
+        ["element", name, count] => {
+            let count = count.parse().map_err(|_| format!("{count:?} is not a count"))?;
+            elements.push(Element { name: name.to_string(), count, properties: Vec::new() });
+        }
+        ["property", ref words @ ..] => {
+            let element = elements.last_mut().ok_or("there is no element before this property")?;
+            element.properties.push(property(words)?);
+        }
+        _ => {
+            // A damaged file may hold a very long line.
+            let shown: String = words.join(" ").chars().take(40).collect();
+            return Err(format!("{shown:?} does not belong into a PLY header"));
+        }
     }
+    Ok(())
+}
+
+fn property(words: &[&str]) -> Result<Property, String> {
+    let (length, kind, name) = match *words {
+        ["list", length, kind, name] => (Some(Kind::parse(length)?), Kind::parse(kind)?, name),
+        [kind, name] => (None, Kind::parse(kind)?, name),
+        _ => return Err("a property reads `property TYPE NAME` or `property list TYPE TYPE NAME`".to_string()),
+    };
+    let property = Property { name: name.to_string(), kind, length };
+    if length.is_some_and(|l| !l.is_integer()) || (property.holds_corners() && !kind.is_integer()) {
+        return Err(format!("the list {name:?} needs whole numbers for its length and its indices"));
+    }
+    Ok(property)
 }
