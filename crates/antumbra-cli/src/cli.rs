@@ -1,11 +1,11 @@
 //! The command line.
 
-use crate::bench::{self, Suite};
 use crate::output::{ValuesFile, npy_path, png_path};
-use crate::study::rho;
-use antumbra::technique::settings::SpecError;
-use antumbra::techniques::TECHNIQUES;
-use antumbra::{AdapterChoice, Spec};
+use antumbra::settings::SpecError;
+use antumbra::{AdapterChoice, Spec, techniques::TECHNIQUES};
+use antumbra_bench::kit::Suite;
+use antumbra_bench::list;
+use antumbra_bench::studies::rho;
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -29,7 +29,7 @@ pub enum Command {
     /// Compare techniques with the truth: error, milliseconds and megabytes, as a table and as a report with pictures
     Compare(CompareArgs),
     /// Measure the tables and curves of papers anew, theirs beside ours
-    #[command(after_help = bench::list())]
+    #[command(after_help = list::help())]
     Bench(BenchArgs),
     /// Put a question that a paper has put to people to an image metric
     #[command(subcommand)]
@@ -104,7 +104,7 @@ pub struct CompareArgs {
 #[derive(Debug, Args)]
 pub struct BenchArgs {
     /// Suites to run, listed below [default: all]
-    #[arg(value_name = "SUITE", value_parser = bench::find)]
+    #[arg(value_name = "SUITE", value_parser = list::find)]
     pub suites: Vec<&'static Suite>,
     /// Folder of the results, made if need be: for each suite a page, a table in Markdown, JSON and CSV
     #[arg(short, long, value_name = "DIR")]

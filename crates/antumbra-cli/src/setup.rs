@@ -1,18 +1,18 @@
-//! From arguments to a scene and to a device that is ready to draw it.
+//! From arguments to a scene, a device and the settings of the reference.
 
-use crate::cli::{GpuArgs, SceneArgs};
-use crate::error::CliError;
-use antumbra::scene::SceneRenderer;
+use crate::cli::{GpuArgs, SceneArgs, TruthArgs};
 use antumbra::{AdapterChoice, Gpu};
+use antumbra_bench::Error;
+use antumbra_bench::truth::TruthSettings;
 use antumbra_scene::Scene;
 use pollster::block_on;
 use std::sync::Arc;
 
-/// The side of a picture that neither the command line nor the scene gives a size.
+/// Side of an image whose size neither the command line nor the scene gives.
 const DEFAULT_SIDE: u32 = 768;
 
-/// Loads the scene and settles the size of its picture.
-pub fn scene(args: &SceneArgs) -> Result<(Scene, [u32; 2]), CliError> {
+/// Loads the scene and determines the size of its image.
+pub fn scene(args: &SceneArgs) -> Result<(Scene, [u32; 2]), Error> {
     let mut scene = antumbra_scene::load(&args.scene)?;
     if let Some(size) = args.light_size {
         scene.light.size = size.0.into();
@@ -22,12 +22,12 @@ pub fn scene(args: &SceneArgs) -> Result<(Scene, [u32; 2]), CliError> {
     Ok((scene, size))
 }
 
-/// Opens the adapter and sees that it can hold the picture.
-pub fn gpu(args: &GpuArgs, size: [u32; 2]) -> Result<Gpu, CliError> {
+/// Opens the adapter and checks that it supports images of this size.
+pub fn gpu(args: &GpuArgs, size: [u32; 2]) -> Result<Gpu, Error> {
     let best = AdapterChoice::default();
     let gpu = block_on(Gpu::new(args.adapter.as_ref().unwrap_or(&best)))?;
     gpu.check_size("picture", size[0], size[1])?;
-    // Errors that no scope of ours was waiting for: by default they would be a panic.
+    // Errors outside of every error scope: by default they are a panic.
     gpu.device.on_uncaptured_error(Arc::new(|error| {
         eprintln!("error: the GPU failed unexpectedly: {error}");
         std::process::exit(1);
@@ -35,20 +35,12 @@ pub fn gpu(args: &GpuArgs, size: [u32; 2]) -> Result<Gpu, CliError> {
     Ok(gpu)
 }
 
-/// Puts the scene on the device.
-pub fn renderer(gpu: &Gpu, scene: &Scene, size: [u32; 2]) -> Result<SceneRenderer, CliError> {
-    Ok(block_on(gpu.checked(|| SceneRenderer::new(gpu, scene, size)))?)
-}
-
-/// The picture with what is in the visibility texture, as 8-bit sRGB triples.
-pub fn picture(gpu: &Gpu, renderer: &SceneRenderer) -> Result<Vec<u8>, CliError> {
-    let rgba = block_on(gpu.checked(|| block_on(renderer.picture(gpu))))?;
-    Ok(rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect())
-}
-
-/// What the technique has found.
-pub fn visibility(gpu: &Gpu, renderer: &SceneRenderer) -> Result<Vec<f32>, CliError> {
-    Ok(block_on(gpu.checked(|| block_on(renderer.read_visibility(gpu))))?)
+/// Sampling of the reference, and the folder of its cache.
+pub fn truth(args: &TruthArgs) -> TruthSettings {
+    let named = args.cache.clone().filter(|dir| !dir.as_os_str().is_empty());
+    let cache = if args.no_cache { None } else { named.or_else(|| Some(dirs::cache_dir()?.join("antumbra"))) };
+    let TruthArgs { light_samples, pixel_samples, seed, .. } = *args;
+    TruthSettings { light_samples, pixel_samples, seed, cache }
 }
 
 /// The command as it was typed; words with spaces in quotes.

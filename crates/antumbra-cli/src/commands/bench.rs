@@ -1,22 +1,25 @@
-//! `antumbra bench`: suites of measurements, each written when it is done.
+//! `antumbra bench`: suites of measurements, each written as soon as it is complete.
 
-use super::print;
-use crate::bench::kit::{self, Context, Lab};
-use crate::bench::{SUITES, Suite};
+use super::{print, write_report};
 use crate::cli::BenchArgs;
 use crate::error::CliError;
-use crate::{output, progress, setup, truth};
+use crate::progress::Terminal;
+use crate::{output, setup};
+use antumbra_bench::kit::{Context, Runner, Suite};
+use antumbra_bench::list::SUITES;
+use antumbra_bench::{Error, truth};
 use antumbra_scene::Scene;
 
-/// Runs the suites that were asked for, or all.
+/// Runs the suites of the command line, or all.
 pub fn run(args: &BenchArgs) -> Result<(), CliError> {
     output::check_new_folder(&args.output)?;
-    let size = args.size.map_or([1, 1], |size| size.0);
-    truth::check_size(size)?;
+    let size = args.size.map(|size| size.0);
+    truth::check_size(size.unwrap_or([1, 1]))?;
     let scenes = scenes(args)?;
-    let gpu = setup::gpu(&args.gpu, size)?;
-    let lab = Lab { args, gpu: &gpu, scenes: &scenes };
-    chosen(args).try_for_each(|suite| measured(suite, &lab))
+    let gpu = setup::gpu(&args.gpu, size.unwrap_or([1, 1]))?;
+    let truth = setup::truth(&args.truth);
+    let runner = Runner { gpu: &gpu, monitor: &Terminal, size, frames: args.gpu.frames, truth, scenes: &scenes };
+    chosen(args).try_for_each(|suite| measure(suite, &runner, args))
 }
 
 fn chosen(args: &BenchArgs) -> impl Iterator<Item = &'static Suite> {
@@ -24,20 +27,19 @@ fn chosen(args: &BenchArgs) -> impl Iterator<Item = &'static Suite> {
     SUITES.iter().filter(named)
 }
 
-/// Loads the command line's scenes first: a name that is mistyped shows before hours of work.
-fn scenes(args: &BenchArgs) -> Result<Vec<Scene>, CliError> {
+/// Loads the command line's scenes first: a mistyped name shows before hours of work.
+fn scenes(args: &BenchArgs) -> Result<Vec<Scene>, Error> {
     if !args.scenes.is_empty() && !chosen(args).any(|suite| suite.scenes) {
-        tracing::warn!("--scene is for suites that take further scenes; those that were asked for do not");
+        tracing::warn!("--scene is for suites that take further scenes; the chosen suites do not");
     }
     Ok(args.scenes.iter().map(|name| antumbra_scene::load(name)).collect::<Result<_, _>>()?)
 }
 
-fn measured(suite: &Suite, lab: &Lab) -> Result<(), CliError> {
-    let Lab { args, gpu, .. } = *lab;
+fn measure(suite: &Suite, runner: &Runner, args: &BenchArgs) -> Result<(), CliError> {
+    let gpu = runner.gpu;
     let software = if gpu.is_software() { ", software" } else { "" };
     print(&format!("{} [{}], {}{software}\n\n", suite.title, suite.source, gpu.info.name))?;
-    let findings = (suite.run)(lab)?;
-    progress::check_cancelled()?;
+    let report = (suite.run)(runner)?;
     let context = Context {
         suite: suite.name,
         title: suite.title,
@@ -45,9 +47,7 @@ fn measured(suite: &Suite, lab: &Lab) -> Result<(), CliError> {
         adapter: gpu.info.name.clone(),
         software: gpu.is_software(),
         command: setup::command_line(),
-        frames: args.gpu.frames,
+        frames: runner.frames,
     };
-    kit::write(&context, &findings, &args.output)?;
-    let page = args.output.join(format!("{}.html", suite.name));
-    print(&format!("{}\n{}\n\nReport: {}\n", kit::terminal(&findings), findings.lead, page.display()))
+    write_report(&context, &report, &args.output)
 }

@@ -5,6 +5,7 @@ use crate::error::CliError;
 use antumbra::technique::TechniqueInfo;
 use antumbra::technique::settings::{Kind, Setting};
 use antumbra::techniques::TECHNIQUES;
+use antumbra_bench::Error;
 use antumbra_scene::builtin;
 use serde::Serialize;
 use std::fmt::Write;
@@ -41,7 +42,7 @@ fn technique_json(t: &TechniqueInfo) -> serde_json::Value {
     })
 }
 
-/// A default as it is typed: text without its quotes.
+/// A default as a user types it: text without quotes.
 fn plain(value: &serde_json::Value) -> String {
     value.as_str().map_or_else(|| value.to_string(), str::to_owned)
 }
@@ -72,7 +73,7 @@ pub fn scenes(json: bool) -> Result<(), CliError> {
     print(&text)
 }
 
-/// An adapter as it is listed.
+/// An adapter in the list.
 #[derive(Serialize)]
 struct Adapter {
     index: usize,
@@ -106,7 +107,7 @@ impl Adapter {
     }
 }
 
-/// Lists the adapters. That there is none is a failure: nothing can be drawn.
+/// Lists the adapters. Fails without any, since nothing can be rendered.
 pub fn adapters(json: bool) -> Result<(), CliError> {
     let found = pollster::block_on(antumbra::gpu::device::adapters());
     let list: Vec<Adapter> = found.iter().enumerate().map(|(i, a)| Adapter::new(i, a)).collect();
@@ -116,7 +117,7 @@ pub fn adapters(json: bool) -> Result<(), CliError> {
         let line = |a: &Adapter| format!("{}  {} ({}, {}, {})\n", a.index, a.name, a.kind, a.backend, a.driver);
         print(&list.iter().map(line).collect::<String>())?;
     }
-    if list.is_empty() { Err(antumbra::Error::NoAdapter.into()) } else { Ok(()) }
+    if list.is_empty() { Err(Error::from(antumbra::Error::NoAdapter).into()) } else { Ok(()) }
 }
 
 fn print_json(value: &impl Serialize) -> Result<(), CliError> {

@@ -1,4 +1,4 @@
-//! The commands: each takes its arguments and works through to the end.
+//! The commands.
 
 mod bench;
 mod compare;
@@ -11,9 +11,13 @@ mod view;
 
 use crate::cli::Command;
 use crate::error::CliError;
+use crate::progress::Terminal;
+use antumbra_bench::kit::{self, Context, Report};
+use antumbra_bench::{Error, Monitor};
 use std::io::{self, Write};
+use std::path::Path;
 
-/// Does what was asked.
+/// Runs a command.
 pub fn run(command: &Command) -> Result<(), CliError> {
     match command {
         Command::Render(args) => render::run(args),
@@ -29,7 +33,7 @@ pub fn run(command: &Command) -> Result<(), CliError> {
     }
 }
 
-/// Prints to stdout. A reader that has gone away (`| head`) has seen what it wanted.
+/// Prints to stdout. A closed pipe (`| head`) is no error.
 fn print(text: &str) -> Result<(), CliError> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -38,4 +42,12 @@ fn print(text: &str) -> Result<(), CliError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Writes the files of a suite or study and prints its tables.
+fn write_report(context: &Context, report: &Report, to: &Path) -> Result<(), CliError> {
+    Terminal.check()?;
+    kit::write(context, report, to).map_err(Error::from)?;
+    let page = to.join(format!("{}.html", context.suite));
+    print(&format!("{}\n{}\n\nReport: {}\n", report.terminal(), report.lead, page.display()))
 }

@@ -1,50 +1,50 @@
-//! `antumbra render`: one technique, its picture, its visibility, its cost.
+//! `antumbra render`: one technique's image, visibility and cost.
 
 use crate::cli::RenderArgs;
 use crate::error::CliError;
-use crate::measure::{self, Cost};
 use crate::output::{self, Outputs};
-use crate::progress::{self, Progress};
+use crate::progress::Terminal;
 use crate::setup;
-use antumbra::Gpu;
-use antumbra_scene::Scene;
-use pollster::block_on;
+use antumbra_bench::Monitor;
+use antumbra_bench::measure::{Cost, LoadedScene};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::Path;
 
-/// Renders and writes what was asked for.
+/// Renders and writes the files of the command line.
 pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     let visibility_path = args.visibility.as_ref().map(|v| v.path.as_path());
     output::check_files([args.output.as_deref(), visibility_path, args.stats.as_deref()].into_iter().flatten())?;
     let (scene, size) = setup::scene(&args.scene)?;
     let gpu = setup::gpu(&args.gpu, size)?;
-    let renderer = setup::renderer(&gpu, &scene, size)?;
-
-    let progress = Progress::new("Rendering");
-    let mut technique = block_on(gpu.checked(|| args.technique.0.make(&gpu)))?;
-    let cost = measure::measure(&gpu, &renderer, &mut *technique, args.gpu.frames, |done| progress.set(done))?;
-    drop(progress);
+    let loaded = LoadedScene::new(&gpu, &Terminal, &scene, size)?;
+    let spec = &args.technique.0;
+    let rendered = loaded.render(spec, args.gpu.frames, Terminal.task("Rendering"))?;
 
     let mut outputs = Outputs::default();
     if let Some(path) = &args.output {
-        outputs.stage(path, output::encode_rgb(size, &setup::picture(&gpu, &renderer)?))?;
+        outputs.stage(path, output::encode_rgb(size, &loaded.image()?.data))?;
     }
     if let Some(file) = &args.visibility {
-        let values = setup::visibility(&gpu, &renderer)?;
-        outputs.stage(&file.path, output::encode_values(file.format, size, &values))?;
+        outputs.stage(&file.path, output::encode_values(file.format, size, &rendered.visibility))?;
     }
     if let Some(path) = &args.stats {
-        let figures = block_on(technique.figures(&gpu))?;
-        stage_stats(&mut outputs, path, &Stats::new(args, &gpu, &scene, size, (&cost, figures)))?;
+        let stats = Stats {
+            adapter: &gpu.info.name,
+            technique: spec.technique.name,
+            settings: &spec.settings,
+            scene: &args.scene.scene,
+            width: size[0],
+            height: size[1],
+            triangles: scene.triangle_count(),
+            frames: args.gpu.frames,
+            stats: &rendered.stats,
+            cost: &rendered.cost,
+        };
+        let json = serde_json::to_vec_pretty(&stats).map_err(Into::into);
+        outputs.stage(path, json.map(|json| [json, b"\n".to_vec()].concat()))?;
     }
-    progress::check_cancelled()?;
+    Terminal.check()?;
     outputs.commit()
-}
-
-fn stage_stats(outputs: &mut Outputs, path: &Path, stats: &Stats) -> Result<(), CliError> {
-    let json = serde_json::to_vec_pretty(stats).map_err(Into::into);
-    outputs.stage(path, json.map(|json| [json, b"\n".to_vec()].concat()))
 }
 
 /// The file of `--stats`.
@@ -58,33 +58,9 @@ struct Stats<'a> {
     height: u32,
     triangles: usize,
     frames: u32,
-    /// What the last frame did, such as the number of maps.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    figures: BTreeMap<&'static str, f64>,
+    /// Statistics of the last frame, such as the number of maps.
+    #[serde(rename = "figures", skip_serializing_if = "BTreeMap::is_empty")]
+    stats: &'a BTreeMap<&'static str, f64>,
     #[serde(flatten)]
     cost: &'a Cost,
-}
-
-impl<'a> Stats<'a> {
-    fn new(
-        args: &'a RenderArgs,
-        gpu: &'a Gpu,
-        scene: &'a Scene,
-        size: [u32; 2],
-        (cost, figures): (&'a Cost, Vec<(&'static str, f64)>),
-    ) -> Self {
-        let spec = &args.technique.0;
-        Stats {
-            adapter: &gpu.info.name,
-            technique: spec.technique.name,
-            settings: &spec.settings,
-            scene: &args.scene.scene,
-            width: size[0],
-            height: size[1],
-            triangles: scene.triangle_count(),
-            frames: args.gpu.frames,
-            figures: figures.into_iter().collect(),
-            cost,
-        }
-    }
 }

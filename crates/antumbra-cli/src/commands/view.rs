@@ -2,13 +2,15 @@
 
 use crate::cli::ViewArgs;
 use crate::error::CliError;
+use crate::progress::Terminal;
+use antumbra_bench::Monitor;
 use antumbra_viewer::Options;
 
 /// Opens the window; ends when it is closed.
 pub fn run(args: &ViewArgs) -> Result<(), CliError> {
-    // Ctrl-C is a request to stop that long work looks for: a window is closed on the spot.
+    // Ctrl-C only requests a stop of long work; a window closes at once.
     std::thread::spawn(|| {
-        while !crate::progress::cancelled().load(std::sync::atomic::Ordering::Relaxed) {
+        while !Terminal.stop().load(std::sync::atomic::Ordering::Relaxed) {
             std::thread::sleep(std::time::Duration::from_millis(100));
         }
         std::process::exit(130);

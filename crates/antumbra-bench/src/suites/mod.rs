@@ -1,0 +1,8 @@
+//! One suite per paper.
+
+pub mod adaptive;
+pub mod backprojection;
+pub mod pvssm;
+pub mod ssm;
+pub mod subpixel;
+pub mod vsm;
