@@ -1,7 +1,7 @@
 //! Failures of a measurement.
 
 use crate::page::files::ReportError;
-use antumbra::settings::SpecError;
+use antumbra::error::SpecError;
 use antumbra_metrics::MetricsError;
 use antumbra_reference::ReferenceError;
 use antumbra_scene::SceneError;

@@ -2,7 +2,7 @@
 
 use crate::kit::Suite;
 use crate::suites::{adaptive, backprojection, pvssm, ssm, subpixel, vsm};
-use antumbra::settings::nearest;
+use antumbra::technique::settings::nearest;
 
 /// Every suite.
 pub const SUITES: &[Suite] =

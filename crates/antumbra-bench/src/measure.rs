@@ -1,9 +1,9 @@
 //! GPU time per pass over several frames, GPU memory, and the rendered images of a technique on a scene.
 
 use crate::{Error, Monitor};
-use antumbra::recorder::PassTime;
+use antumbra::gpu::timer::PassTime;
 use antumbra::scene::SceneRenderer;
-use antumbra::{Gpu, Recorder, Spec, Technique, Timer};
+use antumbra::{Gpu, Shadows, Spec, Technique, Timer};
 use antumbra_metrics::RgbImage;
 use antumbra_scene::Scene;
 use pollster::block_on;
@@ -121,16 +121,21 @@ impl<'a> LoadedScene<'a> {
     /// Creates a technique and measures it; see [`LoadedScene::cost`] for `frames` and `on_frame`.
     pub fn render(&self, spec: &Spec, frames: u32, on_frame: impl Fn(f32)) -> Result<Rendered, Error> {
         let gpu = self.gpu;
-        let mut technique = block_on(gpu.checked(|| spec.make(gpu)))?;
-        let cost = self.cost(&mut *technique, frames, on_frame)?;
-        let stats = self.stats(&*technique)?;
+        let mut shadows = block_on(gpu.checked(|| Shadows::from_spec(gpu, spec)))?;
+        let cost = self.cost(&mut shadows, frames, on_frame)?;
+        let stats = self.stats(&shadows)?;
         let visibility = block_on(gpu.checked(|| block_on(self.renderer.read_visibility(gpu))))?;
         Ok(Rendered { cost, visibility, stats })
     }
 
     /// Renders until `frames` frames are timed, or a single frame without warm-up if `frames` is 0. The visibility of
     /// the last frame stays in the renderer's texture. `on_frame` receives the completed fraction.
-    pub fn cost(&self, technique: &mut dyn Technique, frames: u32, on_frame: impl Fn(f32)) -> Result<Cost, Error> {
+    pub fn cost<T: Technique + ?Sized>(
+        &self,
+        shadows: &mut Shadows<T>,
+        frames: u32,
+        on_frame: impl Fn(f32),
+    ) -> Result<Cost, Error> {
         let (gpu, renderer) = (self.gpu, &self.renderer);
         let mut timer = block_on(gpu.checked(|| Timer::new(gpu)))?;
         let (mut host, mut own, mut wall) = (Samples::default(), Samples::default(), Vec::new());
@@ -138,8 +143,11 @@ impl<'a> LoadedScene<'a> {
         let mut frame = 0;
         while frame < warm_up + frames.max(1) {
             self.monitor.check()?;
-            let (host_times, _) = submit(gpu, &mut timer, |recorder| renderer.record_geometry(recorder))?;
-            let (own_times, wall_ms) = submit(gpu, &mut timer, |recorder| renderer.record_shadow(technique, recorder))?;
+            let (host_times, _) =
+                submit(gpu, &mut timer, |encoder, timer| renderer.record_geometry(gpu, encoder, Some(timer)))?;
+            let (own_times, wall_ms) = submit(gpu, &mut timer, |encoder, timer| {
+                shadows.record_timed(gpu, encoder, &renderer.frame, Some(timer))
+            })?;
             if frame >= warm_up {
                 host.push(host_times);
                 own.push(own_times);
@@ -154,17 +162,17 @@ impl<'a> LoadedScene<'a> {
         if let Some(pass) = host.first_mut() {
             pass.bytes = renderer.geometry.bytes();
         }
-        Ok(cost(gpu, host, with_memory(own.passes(false), technique), median(wall)))
+        Ok(cost(gpu, host, with_memory(own.passes(false), shadows), median(wall)))
     }
 
     /// Statistics of a technique's last frame.
-    pub fn stats(&self, technique: &dyn Technique) -> Result<BTreeMap<&'static str, f64>, Error> {
-        Ok(block_on(self.gpu.checked(|| block_on(technique.figures(self.gpu))))?.into_iter().collect())
+    pub fn stats<T: Technique + ?Sized>(&self, shadows: &Shadows<T>) -> Result<BTreeMap<&'static str, f64>, Error> {
+        Ok(block_on(self.gpu.checked(|| block_on(shadows.stats(self.gpu))))?.into_iter().collect())
     }
 
     /// The scene shaded with the visibility of the last frame, 8-bit sRGB.
     pub fn image(&self) -> Result<RgbImage, Error> {
-        let rgba = block_on(self.gpu.checked(|| block_on(self.renderer.picture(self.gpu))))?;
+        let rgba = block_on(self.gpu.checked(|| block_on(self.renderer.image(self.gpu))))?;
         let [width, height] = self.size;
         Ok(RgbImage { width, height, data: rgba.chunks_exact(4).flat_map(|p| [p[0], p[1], p[2]]).collect() })
     }
@@ -186,11 +194,11 @@ fn frames_to_warm_up(planned: u32, frame: u32, wall_ms: f64) -> u32 {
 fn submit(
     gpu: &Gpu,
     timer: &mut Timer,
-    record: impl FnOnce(&mut Recorder) -> Result<(), antumbra::Error>,
+    record: impl FnOnce(&mut wgpu::CommandEncoder, &Timer) -> Result<(), antumbra::Error>,
 ) -> Result<(Vec<PassTime>, f64), antumbra::Error> {
     block_on(gpu.checked(|| {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        record(&mut Recorder::timed(gpu, &mut encoder, timer))?;
+        record(&mut encoder, timer)?;
         let started = Instant::now();
         let times = timer.finish(gpu, encoder)?;
         Ok((times, started.elapsed().as_secs_f64() * 1000.0))
@@ -209,9 +217,9 @@ fn cost(gpu: &Gpu, host: Vec<Pass>, own: Vec<Pass>, wall_ms: f64) -> Cost {
 }
 
 /// Adds the technique's memory to its passes. Memory of a pass that was not timed becomes an entry of its own.
-fn with_memory(mut passes: Vec<Pass>, technique: &dyn Technique) -> Vec<Pass> {
+fn with_memory<T: Technique + ?Sized>(mut passes: Vec<Pass>, shadows: &Shadows<T>) -> Vec<Pass> {
     let timed = passes.iter().any(|p| p.ms.is_some());
-    for memory in technique.memory() {
+    for memory in shadows.memory() {
         match passes.iter_mut().find(|p| p.name == memory.pass) {
             Some(pass) => pass.bytes += memory.bytes,
             None => {

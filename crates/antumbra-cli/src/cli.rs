@@ -1,8 +1,9 @@
 //! The command line.
 
 use crate::output::{ValuesFile, npy_path, png_path};
-use antumbra::settings::SpecError;
-use antumbra::{AdapterChoice, Spec, techniques::TECHNIQUES};
+use antumbra::error::SpecError;
+use antumbra::{AdapterChoice, Spec};
+use antumbra::techniques::TECHNIQUES;
 use antumbra_bench::kit::Suite;
 use antumbra_bench::list;
 use antumbra_bench::studies::rho;
@@ -232,7 +233,7 @@ impl std::fmt::Debug for Technique {
 }
 
 impl FromStr for Technique {
-    type Err = antumbra::technique::settings::SpecError;
+    type Err = antumbra::error::SpecError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let spec: Spec = with_files(text)?.parse()?;
@@ -265,7 +266,7 @@ fn with_files(text: &str) -> Result<String, SpecError> {
 pub struct Techniques(pub Vec<Technique>);
 
 impl FromStr for Techniques {
-    type Err = antumbra::technique::settings::SpecError;
+    type Err = antumbra::error::SpecError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         let all = || TECHNIQUES.iter().map(|t| t.name.parse()).collect();

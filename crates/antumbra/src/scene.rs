@@ -14,7 +14,7 @@ use crate::passes::pixels::geometry_buffer::GeometryBuffer;
 use crate::passes::pixels::shading;
 use antumbra_scene::{Aabb, Instance, Material, Mesh, Scene, Wrap};
 use glam::{Mat4, Vec3};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 /// A scene on the GPU with everything that an image of it needs.
 pub struct SceneRenderer {
@@ -24,7 +24,7 @@ pub struct SceneRenderer {
     pub frame: Frame,
     /// `R32Float`, filled by a technique.
     pub visibility: Texture,
-    resources: Resources,
+    resources: Mutex<Resources>,
 }
 
 impl SceneRenderer {
@@ -43,17 +43,18 @@ impl SceneRenderer {
         };
         let mut frame = Frame::new(gpu, &descriptor)?;
         frame.update(gpu, view, scene.light, ShadowFrustum::fit(scene, &view));
-        Ok(SceneRenderer { geometry, frame, visibility, resources: Resources::default() })
+        Ok(SceneRenderer { geometry, frame, visibility, resources: Mutex::default() })
     }
 
     /// Records the geometry buffer: the part of a host.
     pub fn record_geometry(
-        &mut self,
+        &self,
         gpu: &Gpu,
         encoder: &mut wgpu::CommandEncoder,
         timer: Option<&Timer>,
     ) -> Result<(), Error> {
-        let mut recorder = Recorder::new(gpu, encoder, &mut self.resources).timed(timer);
+        let mut resources = self.resources.lock().expect("recording does not panic");
+        let mut recorder = Recorder::new(gpu, encoder, &mut resources).timed(timer);
         self.geometry.record(&mut recorder, &self.frame.casters, &self.frame.view)
     }
 

@@ -11,22 +11,31 @@ use crate::technique::{StatsFuture, Technique};
 use crate::techniques::spec::Spec;
 
 /// The shadows of one light by one technique. Textures and buffers are made by the first frame and kept.
-pub struct Shadows {
-    technique: Box<dyn Technique>,
+pub struct Shadows<T: Technique + ?Sized = dyn Technique> {
     resources: Resources,
+    technique: Box<T>,
+}
+
+impl<T: Technique> Shadows<T> {
+    /// Shadows by this technique.
+    pub fn new(technique: T) -> Shadows<T> {
+        Shadows { resources: Resources::default(), technique: Box::new(technique) }
+    }
+
+    /// The technique.
+    pub fn technique(&self) -> &T {
+        &self.technique
+    }
 }
 
 impl Shadows {
-    /// Shadows by this technique.
-    pub fn new(technique: impl Technique + 'static) -> Shadows {
-        Shadows { technique: Box::new(technique), resources: Resources::default() }
-    }
-
     /// Shadows by the technique of a SPEC, for command lines.
     pub fn from_spec(gpu: &Gpu, spec: &Spec) -> Result<Shadows, Error> {
-        Ok(Shadows { technique: spec.make(gpu)?, resources: Resources::default() })
+        Ok(Shadows { resources: Resources::default(), technique: spec.make(gpu)? })
     }
+}
 
+impl<T: Technique + ?Sized> Shadows<T> {
     /// Records all passes that fill the frame's visibility. Nothing waits, and a frame like the last one makes no
     /// resource and no bind group.
     pub fn record(&mut self, gpu: &Gpu, encoder: &mut wgpu::CommandEncoder, frame: &Frame) -> Result<(), Error> {

@@ -29,8 +29,8 @@ fn a_footprint_is_the_derivative_on_the_receivers_own_plane() {
     let gpu = gpu();
     for name in ["fence", "grid:side=16", "spheres:segments=32"] {
         let scene = builtin::build(name).expect("known");
-        let mut renderer = SceneRenderer::new(gpu, &scene, SIZE).expect("uploads");
-        let words = at_pixels(&mut renderer, KERNEL, "footprints", &[], u64::from(SIZE[0] * SIZE[1]) * 48);
+        let renderer = SceneRenderer::new(gpu, &scene, SIZE).expect("uploads");
+        let words = at_pixels(&renderer, KERNEL, "footprints", &[], u64::from(SIZE[0] * SIZE[1]) * 48);
 
         let view = &renderer.frame.view;
         let world_from_clip = (view.clip_from_view.as_dmat4() * view.view_from_world.as_dmat4()).inverse();

@@ -39,7 +39,7 @@ const KERNEL: &str = "
 /// Offsets from the receiver at which its plane is asked for.
 const TANGENTS: [Vec2; 3] = [Vec2::ZERO, Vec2::new(0.05, -0.02), Vec2::new(-0.3, 0.4)];
 
-fn on_gpu(renderer: &mut SceneRenderer) -> Vec<Vec<f32>> {
+fn on_gpu(renderer: &SceneRenderer) -> Vec<Vec<f32>> {
     let usage = wgpu::BufferUsages::STORAGE;
     let tangents = buffer_of(gpu(), "tangents", bytemuck::cast_slice(&TANGENTS), usage);
     let bytes = u64::from(SIZE[0] * SIZE[1]) * 96;
@@ -104,9 +104,9 @@ fn scenes() -> Vec<Scene> {
 
 /// Calls with every pixel of a scene that faces the light.
 fn for_each_receiver(scene: &Scene, mut call: impl FnMut([u32; 2], &Twin, &[f32])) {
-    let mut renderer = SceneRenderer::new(gpu(), scene, SIZE).expect("uploads");
+    let renderer = SceneRenderer::new(gpu(), scene, SIZE).expect("uploads");
     let mut count = 0;
-    for (i, words) in on_gpu(&mut renderer).iter().enumerate() {
+    for (i, words) in on_gpu(&renderer).iter().enumerate() {
         let pixel = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
         let twin = Twin::new(scene, &renderer, pixel, words);
         if words[0] > 0.0 && twin.position.z > 0.0 && twin.cosine() > 0.01 {

@@ -39,7 +39,7 @@ pub fn technique(spec: &str) -> Shadows {
 
 /// A scene with its geometry buffer drawn.
 pub fn drawn(scene: &Scene, size: [u32; 2]) -> SceneRenderer {
-    let mut renderer = SceneRenderer::new(gpu(), scene, size).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
+    let renderer = SceneRenderer::new(gpu(), scene, size).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
     renderer
 }

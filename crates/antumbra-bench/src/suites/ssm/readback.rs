@@ -4,10 +4,10 @@
 use super::stage::Stage;
 use super::truth::floats;
 use crate::Error;
-use antumbra::recorder::Recorder;
-use antumbra::resource::Texture;
-use antumbra::techniques::ssm::Ssm;
-use antumbra::{Frame, Gpu};
+use antumbra::gpu::recorder::color_target;
+use antumbra::gpu::texture::{Texture, TextureDescription};
+use antumbra::techniques::ssm::{Ssm, SsmMaps};
+use antumbra::{Frame, Gpu, Shadows};
 use pollster::block_on;
 use std::time::Instant;
 use wgpu::util::DeviceExt;
@@ -34,12 +34,10 @@ pub fn frame(stage: &Stage, map: u32) -> Result<Steps, Error> {
     let gpu = stage.loaded.gpu;
     let mut ssm = stage.create(&format!("ssm:map={map},passes=1"))?;
     draw_maps(stage, &mut ssm)?;
-    let pipeline = Rectangles::new(gpu, &stage.loaded.renderer.frame, &ssm, map);
+    let maps = ssm.technique().maps().expect("a frame was drawn");
+    let pipeline = Rectangles::new(gpu, &stage.loaded.renderer.frame, maps, map);
     let started = Instant::now();
-    let depths: Vec<f32> = match ssm.occluder_map() {
-        Some(map) => floats(&block_on(gpu.read_texture(map))?),
-        None => Vec::new(),
-    };
+    let depths: Vec<f32> = floats(&block_on(gpu.read_texture(&maps.occluders))?);
     let read = milliseconds(started);
     let started = Instant::now();
     let instances = rectangles(&depths, map, &stage.loaded.renderer.frame);
@@ -55,12 +53,12 @@ fn milliseconds(since: Instant) -> f64 {
     since.elapsed().as_secs_f64() * 1000.0
 }
 
-fn draw_maps(stage: &Stage, ssm: &mut Ssm) -> Result<(), Error> {
+fn draw_maps(stage: &Stage, ssm: &mut Shadows<Ssm>) -> Result<(), Error> {
     let gpu = stage.loaded.gpu;
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let mut recorder = Recorder::new(gpu, &mut encoder);
-    stage.loaded.renderer.record_geometry(&mut recorder)?;
-    stage.loaded.renderer.record_shadow(ssm, &mut recorder)?;
+    let renderer = &stage.loaded.renderer;
+    renderer.record_geometry(gpu, &mut encoder, None)?;
+    ssm.record(gpu, &mut encoder, &renderer.frame)?;
     gpu.queue.submit([encoder.finish()]);
     Ok(gpu.wait()?)
 }
@@ -94,7 +92,7 @@ struct Rectangles {
 }
 
 impl Rectangles {
-    fn new(gpu: &Gpu, frame: &Frame, ssm: &Ssm, size: u32) -> Rectangles {
+    fn new(gpu: &Gpu, frame: &Frame, maps: &SsmMaps, size: u32) -> Rectangles {
         let device = &gpu.device;
         let module = device.create_shader_module(wgpu::include_wgsl!("readback.wgsl"));
         let format = wgpu::TextureFormat::R32Float;
@@ -139,17 +137,17 @@ impl Rectangles {
             contents: &shape,
             usage: wgpu::BufferUsages::UNIFORM,
         });
-        let receivers = ssm.receiver_map().expect("a frame was drawn");
         let group = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: None,
             layout: &pipeline.get_bind_group_layout(0),
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: shape.as_entire_binding() },
-                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&receivers.view) },
+                wgpu::BindGroupEntry { binding: 1, resource: wgpu::BindingResource::TextureView(&maps.receivers.view) },
             ],
         });
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC;
-        Rectangles { pipeline, group, target: Texture::new(gpu, "soft shadow map", [size; 2], 1, format, usage) }
+        let description = TextureDescription::new([size; 2], format, "hidden fraction of the light").usage(usage);
+        Rectangles { pipeline, group, target: Texture::new(gpu, "soft shadow map", description) }
     }
 
     fn draw(&self, gpu: &Gpu, instances: &[f32]) {
@@ -160,13 +158,16 @@ impl Rectangles {
             usage: wgpu::BufferUsages::VERTEX,
         });
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let color = [antumbra::gpu::recorder::color_target(&self.target.view, wgpu::Color::TRANSPARENT)];
-        Recorder::new(gpu, &mut encoder).render_pass("rectangles of the CPU", &color, None, |_, pass| {
-            pass.set_pipeline(&self.pipeline);
-            pass.set_bind_group(0, &self.group, &[]);
-            pass.set_vertex_buffer(0, buffer.slice(..));
-            pass.draw(0..6, 0..(instances.len() / 7) as u32);
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("rectangles of the CPU"),
+            color_attachments: &[color_target(&self.target.view, wgpu::Color::TRANSPARENT)],
+            ..Default::default()
         });
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.set_vertex_buffer(0, buffer.slice(..));
+        pass.draw(0..6, 0..(instances.len() / 7) as u32);
+        drop(pass);
         gpu.queue.submit([encoder.finish()]);
     }
 }

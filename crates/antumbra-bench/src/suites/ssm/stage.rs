@@ -4,8 +4,7 @@ use super::truth::MapTruth;
 use crate::Error;
 use crate::kit::Runner;
 use crate::measure::LoadedScene;
-use antumbra::Spec;
-use antumbra::technique::Describe;
+use antumbra::{Shadows, Spec, TechniqueFactory};
 use antumbra::techniques::ssm::{Ssm, SsmSettings};
 use antumbra_reference::Tracer;
 use antumbra_scene::Scene;
@@ -51,7 +50,7 @@ impl<'a> Stage<'a> {
         let ms = self.loaded.cost(&mut ssm, frames, |_| ())?.comparable_ms(gpu);
         let stats = self.loaded.stats(&ssm)?;
         let lost = stats["float16 loses"] / stats["patches"].max(1.0);
-        Ok(Sample { spec: spec.to_owned(), error: self.truth(&ssm)?.error(gpu, &ssm)?, ms, lost })
+        Ok(Sample { spec: spec.to_owned(), error: self.truth(&ssm)?.error(gpu, ssm.technique())?, ms, lost })
     }
 
     /// Milliseconds of a frame of any technique.
@@ -60,14 +59,15 @@ impl<'a> Stage<'a> {
     }
 
     /// The technique itself, whose maps can be read.
-    pub fn create(&self, spec: &str) -> Result<Ssm, Error> {
+    pub fn create(&self, spec: &str) -> Result<Shadows<Ssm>, Error> {
         let (gpu, spec): (_, Spec) = (self.loaded.gpu, spec.parse()?);
         let settings: SsmSettings = serde_json::from_value(spec.settings).expect("settings of `ssm`");
-        Ok(block_on(gpu.checked(|| Ssm::make(gpu, settings)))?)
+        Ok(Shadows::new(block_on(gpu.checked(|| Ssm::make(gpu, settings)))?))
     }
 
-    fn truth(&self, ssm: &Ssm) -> Result<Rc<MapTruth>, Error> {
-        let size = ssm.soft_shadow_map().texture.width();
+    fn truth(&self, ssm: &Shadows<Ssm>) -> Result<Rc<MapTruth>, Error> {
+        let ssm = ssm.technique();
+        let size = ssm.maps().map_or(0, |maps| maps.soft_shadow.size()[0]);
         if let Some(truth) = self.truths.borrow().get(&size) {
             return Ok(truth.clone());
         }

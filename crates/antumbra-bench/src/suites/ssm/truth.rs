@@ -23,10 +23,10 @@ pub struct MapTruth {
 impl MapTruth {
     /// Traces from the receivers in the technique's map.
     pub fn of(gpu: &Gpu, scene: &Scene, tracer: &Tracer, frame: &Frame, ssm: &Ssm) -> Result<MapTruth, Error> {
-        let Some(map) = ssm.receiver_map() else { return Ok(MapTruth { texels: Vec::new() }) };
-        let depths: Vec<f32> = floats(&block_on(gpu.read_texture(map))?);
+        let Some(maps) = ssm.maps() else { return Ok(MapTruth { texels: Vec::new() }) };
+        let depths: Vec<f32> = floats(&block_on(gpu.read_texture(&maps.receivers))?);
         let texels: Vec<usize> = spread(depths.len()).filter(|&i| depths[i] > 0.0).collect();
-        let side = map.texture.width();
+        let [side, _] = maps.receivers.size();
         let point = |i: usize| receiver(frame, side, i, depths[i]);
         let threads = std::thread::available_parallelism().map_or(1, usize::from);
         let chunks = texels.chunks(texels.len().div_ceil(threads).max(1));
@@ -42,7 +42,8 @@ impl MapTruth {
     /// Sum of absolute differences over the number of texels in shadow or penumbra [Atty 2006, section 5.2.1]; 0 where
     /// there is no shadow.
     pub fn error(&self, gpu: &Gpu, ssm: &Ssm) -> Result<f64, Error> {
-        let hidden: Vec<f32> = floats(&block_on(gpu.read_texture(ssm.soft_shadow_map()))?);
+        let Some(maps) = ssm.maps() else { return Ok(0.0) };
+        let hidden: Vec<f32> = floats(&block_on(gpu.read_texture(&maps.soft_shadow))?);
         let sum: f64 = self.texels.iter().map(|&(i, truth)| (1.0 - f64::from(hidden[i]) - truth).abs()).sum();
         Ok(sum / self.texels.iter().filter(|(_, truth)| *truth < LIT).count().max(1) as f64)
     }

@@ -7,7 +7,7 @@ use crate::measure::LoadedScene;
 use crate::page::text;
 use crate::table::{Table, column};
 use antumbra::Spec;
-use antumbra::techniques::subpixel::SubpixelSettings;
+use antumbra::techniques::alias_free::subpixel::SubpixelSettings;
 use antumbra_metrics::RgbImage;
 use antumbra_reference::{Reference, trace_centre};
 use antumbra_scene::{Scene, builtin};
