@@ -2,8 +2,8 @@
 
 use crate::output::{ValuesFile, npy_path, png_path};
 use antumbra::error::SpecError;
-use antumbra::{AdapterChoice, Spec};
 use antumbra::techniques::TECHNIQUES;
+use antumbra::{AdapterChoice, Spec};
 use antumbra_bench::kit::Suite;
 use antumbra_bench::list;
 use antumbra_bench::studies::rho;

@@ -330,16 +330,28 @@ impl Resources {
         key: &[u8],
         contents: impl FnOnce() -> Vec<u8>,
     ) -> wgpu::Buffer {
-        let fits = |c: &Content| matches!(c, Content::Filled { bytes, .. } if *bytes == key);
-        let index = self.find(label, fits).unwrap_or_else(|| {
-            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-            let buffer = buffer_of(gpu, label, &contents(), usage);
-            self.add(label, Content::Filled { buffer, bytes: key.to_vec() })
-        });
-        match &self.entries[index].content {
-            Content::Filled { buffer, .. } => buffer.clone(),
-            _ => unreachable!("found as a filled buffer"),
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        let new = |contents: &[u8]| buffer_of(gpu, label, contents, usage);
+        let Some(index) = self.find(label, |c| matches!(c, Content::Filled { .. })) else {
+            let buffer = new(&contents());
+            self.add(label, Content::Filled { buffer: buffer.clone(), bytes: key.to_vec() });
+            return buffer;
+        };
+        let Content::Filled { buffer, bytes } = &mut self.entries[index].content else {
+            unreachable!("found as a filled buffer")
+        };
+        if *bytes != key {
+            let contents = contents();
+            if contents.len() as u64 == buffer.size() {
+                gpu.queue.write_buffer(buffer, 0, &contents);
+            } else {
+                *buffer = new(&contents);
+                self.made += 1;
+            }
+            bytes.clear();
+            bytes.extend_from_slice(key);
         }
+        buffer.clone()
     }
 
     pub(super) fn readback(&mut self, gpu: &Gpu, label: &'static str, size: u64) -> &Readback {

@@ -4,7 +4,7 @@ use crate::technique::{TechniqueInfo, entry};
 
 // TODO(convert) pub mod alias_free;
 pub mod backprojection;
-// TODO(convert) pub mod light_sampling;
+pub mod light_sampling;
 pub mod moments;
 pub mod pcss;
 // TODO(convert) pub mod pvssm;
@@ -32,8 +32,8 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     // TODO(convert) entry::<pvssm::Pvssm>(),
     // TODO(convert) entry::<pvssm::fvsm::Fvsm>(),
     // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),
-    // TODO(convert) entry::<light_sampling::uniform::UniformSampling>(),
-    // TODO(convert) entry::<light_sampling::adaptive::AdaptiveSampling>(),
+    entry::<light_sampling::uniform::UniformSampling>(),
+    entry::<light_sampling::adaptive::AdaptiveSampling>(),
     // TODO(convert) entry::<alias_free::hard::AliasFree>(),
     // TODO(convert) entry::<alias_free::soft::AliasFreeSoft>(),
 ];

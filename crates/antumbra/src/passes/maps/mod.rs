@@ -4,7 +4,7 @@ pub mod depth_layers;
 pub mod depth_map;
 pub mod depth_pyramid;
 pub mod light_depth;
-// TODO(convert) pub mod light_maps;
+pub mod light_maps;
 pub mod moments;
 pub mod patch_pyramid;
 pub mod summed_area;

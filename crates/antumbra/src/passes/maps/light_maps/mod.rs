@@ -1,6 +1,6 @@
-//! Shadow maps from many points of the light, in the layers of one texture array, and what a receiver sees through them.
+//! Shadow maps from many points of the light, in the layers of one texture array, and visibility through them.
 //!
-//! All maps look along the light's normal, and each window is shifted so that all of them hold the same receivers: in the
+//! All maps face along the light's normal, and each window is shifted so that all of them hold the same receivers: in the
 //! coordinates tangent xy / z and inverse distance 1 / z the map of light point s is the centre's map, sheared by s.
 
 pub(crate) mod draw;
@@ -8,18 +8,14 @@ pub(crate) mod evaluate;
 
 pub use draw::LightMaps;
 pub(crate) use draw::{MapSlot, MapStage};
-pub(crate) use evaluate::Entry;
 pub use evaluate::Evaluation;
+pub(crate) use evaluate::{Entry, entry_list};
 
-use crate::gpu::resources::{storage_bytes, storage_of};
-use crate::input::casters::Casters;
-use crate::input::frame::Frame;
-use crate::gpu::device::Gpu;
-use crate::input::frustum::ShadowFrustum;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::resources::storage_bytes;
 use crate::gpu_struct;
-use antumbra_scene::RectLight;
+use crate::input::frame::{Frame, light_from_world};
 use glam::{DMat4, DVec4, Mat4, Vec2};
-use std::sync::{Arc, Weak};
 
 gpu_struct! {
     /// A point of the light and the map that is drawn from it.
@@ -34,56 +30,18 @@ gpu_struct! {
     }
 }
 
-/// The table of points that maps are drawn from, on the GPU.
-pub struct LightSamples {
-    /// An array of `LightSample`.
-    pub buffer: wgpu::Buffer,
-    made_for: (RectLight, ShadowFrustum, usize),
-}
-
-impl LightSamples {
-    /// Makes the table in `slot` unless it is there: `points` are places on the light, each in [-1/2, 1/2]².
-    pub fn ensure<'a>(
-        slot: &'a mut Option<LightSamples>,
-        gpu: &Gpu,
-        frame: &Frame,
-        points: &[Vec2],
-    ) -> &'a LightSamples {
-        let key = (frame.light, frame.frustum, points.len());
-        if slot.as_ref().is_none_or(|s| s.made_for != key) {
-            let samples: Vec<LightSample> = points.iter().map(|p| sample(frame, *p)).collect();
-            let old = slot.take().filter(|s| s.made_for.2 == key.2).map(|s| s.buffer);
-            let buffer = match old {
-                Some(buffer) => {
-                    gpu.queue.write_buffer(&buffer, 0, &storage_bytes(&samples));
-                    buffer
-                }
-                None => storage_of(gpu, "light samples", &samples),
-            };
-            *slot = Some(LightSamples { buffer, made_for: key });
-        }
-        slot.as_ref().expect("just made")
-    }
-}
-
-/// What maps depend on beside their light points.
-#[derive(Clone)]
-pub struct Drawn {
-    light: RectLight,
-    frustum: ShadowFrustum,
-    casters: Weak<Casters>,
-}
-
-impl Drawn {
-    /// What maps of this frame are drawn for.
-    pub fn of(frame: &Frame) -> Drawn {
-        Drawn { light: frame.light, frustum: frame.frustum, casters: Arc::downgrade(&frame.casters) }
-    }
-
-    /// True if maps drawn for one are maps for the other, as long as no caster has moved.
-    pub fn is(&self, other: &Drawn) -> bool {
-        self.light == other.light && self.frustum == other.frustum && self.casters.ptr_eq(&other.casters)
-    }
+/// The table of light points on the GPU, an array of `LightSample`: `points` are positions on the light, each in
+/// [-1/2, 1/2]². Points of one number are the same for a light of one size.
+pub(crate) fn light_samples(recorder: &mut Recorder, frame: &Frame, points: &[Vec2]) -> wgpu::Buffer {
+    let (light, f) = (&frame.light, &frame.frustum);
+    let (right, up, forward) = light.basis();
+    let vectors = [light.center, right, up, forward].map(|v| v.to_array());
+    let [c, r, u, n] = vectors;
+    let window = [f.tan_half.x, f.tan_half.y, f.near];
+    let key =
+        [c, r, u, n, [light.size.x, light.size.y, points.len() as f32], window, [f.receivers[0], f.receivers[1], 0.0]];
+    let contents = || storage_bytes(&points.iter().map(|p| sample(frame, *p)).collect::<Vec<_>>());
+    recorder.buffer_of_key("light samples", bytemuck::bytes_of(&key), contents)
 }
 
 /// The map of a light point: an oblique frustum whose window at the middle of the receivers' range of inverse distances
@@ -101,6 +59,6 @@ fn sample(frame: &Frame, place: Vec2) -> LightSample {
         DVec4::new(-middle.x / tan.x, middle.y / tan.y, 0.0, 1.0),
         DVec4::new(-p.x / tan.x, p.y / tan.y, f64::from(f.near), 0.0),
     );
-    let light_from_world = crate::input::frame::light_from_world(&frame.light);
+    let light_from_world = light_from_world(&frame.light);
     LightSample { clip_from_world: (clip_from_light * light_from_world).as_mat4(), point, tan_half, tan_middle }
 }

@@ -1,7 +1,7 @@
 //! What can be set.
 
 use crate::error::SpecError;
-use crate::technique::settings::{Kind, };
+use crate::technique::settings::Kind;
 use crate::techniques::light_sampling::uniform::{Evaluate, Weights};
 
 crate::choices! {

@@ -1,18 +1,22 @@
-//! The tree's buffers, and what the host knows of its shape before the GPU has decided anything.
+//! The shape of the tree, known to the host before the GPU decides, and the tree's buffers.
 
 use super::{AdaptiveSamplingSettings, Criterion, LIGHT_VIEW, Space};
-use crate::passes::maps::light_maps::{Evaluation, LightMaps, MapSlot, MapStage};
-use crate::gpu::resources::{UniformArray, read_buffer, storage_buffer, storage_of};
-use crate::technique::Memory;
-use crate::techniques::light_sampling::uniform::{Evaluate, Weights};
 use crate::error::Error;
+use crate::gpu::bindings::Binding;
 use crate::gpu::device::Gpu;
-use crate::gpu_struct;
+use crate::gpu::readback::read_buffer;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::resources::{BufferDescription, UniformArray, storage_bytes};
+use crate::input::frame::Frame;
+use crate::passes::maps::light_maps::draw::Layers;
+use crate::passes::maps::light_maps::{Evaluation, LightMaps, MapSlot, MapStage};
+use crate::techniques::light_sampling::uniform::{Evaluate, Weights};
+use crate::{binding_array, gpu_struct};
 use glam::{UVec2, Vec2};
 use std::ops::Range;
 
 gpu_struct! {
-    /// What all shaders of the technique know.
+    /// Constants of all shaders of the technique.
     pub(crate) struct AdaptiveUniform {
         /// Tiles of 8 x 8 points that are compared.
         tiles: UVec2,
@@ -45,8 +49,8 @@ gpu_struct! {
     /// A round of refinement.
     pub(crate) struct PlanUniform {
         level: u32,
-        /// 1 if maps of the last frame may still be used.
-        maps_rest: u32,
+        /// 1 if maps of the last frame are still valid.
+        maps_valid: u32,
         /// 1 if weights go to their goals at once.
         jump: u32,
     }
@@ -138,38 +142,72 @@ pub(super) struct Chunk {
     pub stage: MapStage,
 }
 
-/// The tree on the GPU.
-pub(super) struct State {
+/// The shape of the tree and its rounds: everything that the host knows before the GPU decides.
+pub(super) struct TreePlan {
+    pub key: TreeKey,
     pub shape: Shape,
     pub capacity: u32,
     /// True if only a chunk of the maps is in memory at a time.
     pub is_chunked: bool,
     /// Tiles that are compared.
     pub tiles: u32,
-    pub picture: [u32; 2],
-    pub light_size: Vec2,
-    /// Places of all samples on the light.
-    pub places: Vec<Vec2>,
-    pub uniform: wgpu::Buffer,
-    pub plans: UniformArray<PlanUniform>,
-    pub stages: UniformArray<MapStage>,
-    /// For each level, first with all maps drawn anew, then with maps at rest: its stages.
+    /// Positions of all samples on the light.
+    pub points: Vec<Vec2>,
+    pub layers: Layers,
+    uniform: AdaptiveUniform,
+    stages: Vec<MapStage>,
+    /// For each level, first with all maps drawn anew, then with static maps: its stages.
     chunks: [Vec<Range<u32>>; 2],
-    pub tree: wgpu::Buffer,
-    pub cells: wgpu::Buffer,
-    pub grid: wgpu::Buffer,
-    pub layer_of: wgpu::Buffer,
-    pub slots: wgpu::Buffer,
-    pub active_cells: wgpu::Buffer,
-    pub fresh_layers: wgpu::Buffer,
-    pub values: wgpu::Buffer,
-    pub entries: wgpu::Buffer,
     pub evaluation: Evaluation,
 }
 
-impl State {
+/// The input that a plan depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TreeKey {
+    image: [u32; 2],
+    light_size: Vec2,
+    clusters: u32,
+    batches: usize,
+}
+
+impl TreeKey {
+    pub fn of(frame: &Frame) -> TreeKey {
+        let casters = &frame.casters;
+        let (image, light_size) = (frame.size, frame.light.size);
+        TreeKey { image, light_size, clusters: casters.cluster_count, batches: casters.batches.len() }
+    }
+}
+
+impl TreePlan {
+    pub fn new(gpu: &Gpu, settings: &AdaptiveSamplingSettings, frame: &Frame) -> Result<TreePlan, Error> {
+        let key = TreeKey::of(frame);
+        let shape = Shape::of_settings(key.light_size, settings);
+        let capacity = Self::capacity(gpu, settings, shape);
+        let at_once = Self::maps_at_once(gpu, settings, capacity);
+        let layers = Layers::new(gpu, at_once, &frame.casters);
+        let uniform = uniform_of(settings, shape, capacity, key.image, key.light_size);
+        let mut stages = Vec::new();
+        let chunks = [false, true].map(|is_static| {
+            let slots = |level| if is_static { 0..capacity } else { shape.layers_of(level, capacity) };
+            (0..=shape.depth).map(|level| push_stages(&mut stages, &layers, at_once, slots(level), level)).collect()
+        });
+        Ok(TreePlan {
+            evaluation: Evaluation::new(gpu, settings.pcf, capacity, capacity)?,
+            is_chunked: settings.evaluation == Evaluate::Accumulate,
+            tiles: uniform.tiles.x * uniform.tiles.y,
+            points: shape.places(),
+            key,
+            shape,
+            capacity,
+            layers,
+            uniform,
+            stages,
+            chunks,
+        })
+    }
+
     /// Number of samples that the tree may have.
-    pub fn capacity(gpu: &Gpu, settings: &AdaptiveSamplingSettings, shape: Shape) -> u32 {
+    fn capacity(gpu: &Gpu, settings: &AdaptiveSamplingSettings, shape: Shape) -> u32 {
         let most = shape.samples_at(shape.depth).min(settings.maps);
         match settings.evaluation {
             // The corners of the light are always drawn.
@@ -179,7 +217,7 @@ impl State {
     }
 
     /// Number of maps in memory.
-    pub fn layers(gpu: &Gpu, settings: &AdaptiveSamplingSettings, capacity: u32) -> u32 {
+    fn maps_at_once(gpu: &Gpu, settings: &AdaptiveSamplingSettings, capacity: u32) -> u32 {
         match settings.evaluation {
             Evaluate::Array => capacity,
             // Whole groups of layers, so that chunks do not overlap.
@@ -187,98 +225,109 @@ impl State {
         }
     }
 
-    pub fn new(
-        gpu: &Gpu,
-        settings: &AdaptiveSamplingSettings,
-        shape: Shape,
-        (picture, light_size): ([u32; 2], Vec2),
-        maps: &LightMaps,
-    ) -> Result<State, Error> {
-        let capacity = State::capacity(gpu, settings, shape);
+    /// The index of a round in the list of plans.
+    pub fn round(level: u32, maps_valid: bool, jump: bool) -> u32 {
+        4 * level + 2 * u32::from(maps_valid) + u32::from(jump)
+    }
+
+    /// The stages that a round draws.
+    pub fn chunks(&self, level: u32, is_static: bool) -> impl Iterator<Item = Chunk> {
+        let range = self.chunks[usize::from(is_static)][level as usize].clone();
+        range.map(|index| Chunk { index, stage: self.stages[index as usize] })
+    }
+
+    /// The tree's buffers, kept from frame to frame.
+    pub fn tree(&self, recorder: &mut Recorder) -> Tree {
+        let TreePlan { shape, capacity, uniform, .. } = self;
         let samples = shape.samples_at(shape.depth);
-        let uniform = uniform_of(settings, shape, capacity, picture, light_size);
-        let layers = State::layers(gpu, settings, capacity);
-        let words = |label, count: u32, words: u64| storage_buffer(gpu, label, u64::from(count) * words * 4);
-        let plans = (0..=shape.depth).flat_map(|level| {
-            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(maps_rest, jump)| PlanUniform { level, maps_rest, jump })
-        });
-        let mut stages = Vec::new();
-        let chunks = [false, true].map(|rest| {
-            (0..=shape.depth)
-                .map(|level| {
-                    push_stages(
-                        &mut stages,
-                        maps,
-                        layers,
-                        if rest { 0..capacity } else { shape.layers_of(level, capacity) },
-                        level,
-                    )
-                })
-                .collect()
-        });
-        let empty = vec![MapSlot { sample: u32::MAX, stage: UNUSED }; capacity as usize];
         let points = (uniform.tiles.x * uniform.tiles.y).next_multiple_of(64) * 64;
-        let nowhere = vec![u32::MAX; samples as usize];
-        Ok(State {
-            uniform: crate::gpu::resources::uniform(gpu, "adaptive sampling", &uniform),
-            plans: UniformArray::new(gpu, "refinement round", &plans.collect::<Vec<_>>()),
-            stages: UniformArray::new(gpu, "map stages", &stages),
-            chunks,
-            tree: words("tree", 1, 12),
-            cells: words("tree cells", shape.cells(), 3),
-            grid: words("grid of samples", samples, 12),
-            layer_of: storage_of(gpu, "layers of samples", &nowhere),
-            slots: storage_of(gpu, "map slots", &empty),
-            active_cells: words("cells to compare", shape.cells(), 1),
-            fresh_layers: words("maps to reproject", samples.max(shape.cells()), 1),
-            values: words("reprojected maps", capacity, u64::from(points)),
-            entries: words("sample weights", capacity + 1, 8),
-            evaluation: Evaluation::new(gpu, settings.pcf, capacity, capacity)?,
-            shape,
-            capacity,
-            is_chunked: settings.evaluation == Evaluate::Accumulate,
-            tiles: uniform.tiles.x * uniform.tiles.y,
-            picture,
-            light_size,
-            places: shape.places(),
-        })
-    }
-
-    /// The place of a round in the list of plans.
-    pub fn plan(level: u32, maps_rest: bool, jump: bool) -> u32 {
-        4 * level + 2 * u32::from(maps_rest) + u32::from(jump)
-    }
-
-    /// What is drawn in a round.
-    pub fn chunks(&self, level: u32, rest: bool) -> impl Iterator<Item = Chunk> {
-        let range = self.chunks[usize::from(rest)][level as usize].clone();
-        range.map(|index| Chunk { index, stage: self.stages.value(index) })
-    }
-
-    pub fn memory(&self) -> [Memory; 2] {
-        let lists = [&self.tree, &self.cells, &self.grid, &self.layer_of, &self.slots, &self.active_cells];
-        let more = [&self.fresh_layers, &self.entries];
-        let bytes = lists.iter().chain(&more).map(|b| b.size()).sum();
-        [Memory::new("refinement", bytes), Memory::new("reprojection", self.values.size())]
-    }
-
-    /// Number of samples, and of maps that the last frame drew.
-    pub async fn stats(&self, gpu: &Gpu) -> Result<Vec<(&'static str, f64)>, Error> {
-        let bytes = read_buffer(gpu, &self.tree).await?;
-        let word = |i: usize| {
-            f64::from(u32::from_le_bytes([bytes[4 * i], bytes[4 * i + 1], bytes[4 * i + 2], bytes[4 * i + 3]]))
+        let TreeKey { image, light_size, clusters, batches } = self.key;
+        let key = [image[0], image[1], light_size.x.to_bits(), light_size.y.to_bits(), clusters, batches as u32];
+        let key = bytemuck::bytes_of(&key);
+        let mut words = |label, count: u32, words: u64| {
+            recorder.buffer(label, BufferDescription::new(u64::from(count) * words * 4))
         };
-        Ok(vec![("maps", word(3)), ("maps drawn", word(7))])
+        let tree = words("tree", 1, 12);
+        let cells = words("tree cells", shape.cells(), 3);
+        let grid = words("grid of samples", samples, 12);
+        let active_cells = words("cells to compare", shape.cells(), 1);
+        let fresh_layers = words("maps to reproject", samples.max(shape.cells()), 1);
+        let entries = words("sample weights", capacity + 1, 8);
+        let nowhere = || vec![0xff; 4 * samples as usize];
+        let unused = || storage_bytes(&vec![MapSlot { sample: u32::MAX, stage: UNUSED }; *capacity as usize]);
+        let rounds = (0..=shape.depth).flat_map(|level| {
+            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(maps_valid, jump)| PlanUniform { level, maps_valid, jump })
+        });
+        Tree {
+            layer_of: recorder.buffer_of_key("layers of samples", key, nowhere),
+            slots: recorder.buffer_of_key("map slots", key, unused),
+            uniform: recorder.uniform("adaptive sampling", uniform),
+            rounds: recorder.uniforms("refinement round", rounds),
+            stages: recorder.uniforms("map stages", self.stages.iter().copied()),
+            values: recorder
+                .buffer("reprojected maps", BufferDescription::new(u64::from(*capacity) * u64::from(points) * 4)),
+            tree,
+            cells,
+            grid,
+            active_cells,
+            fresh_layers,
+            entries,
+        }
     }
 }
 
-/// Appends the stages that draw a run of slots, `layers` at a time, and tells where they are in the list.
-fn push_stages(stages: &mut Vec<MapStage>, maps: &LightMaps, layers: u32, slots: Range<u32>, level: u32) -> Range<u32> {
+/// The tree on the GPU.
+pub(super) struct Tree {
+    pub uniform: wgpu::Buffer,
+    pub rounds: UniformArray,
+    pub stages: UniformArray,
+    pub tree: wgpu::Buffer,
+    pub cells: wgpu::Buffer,
+    pub grid: wgpu::Buffer,
+    pub layer_of: wgpu::Buffer,
+    pub slots: wgpu::Buffer,
+    pub active_cells: wgpu::Buffer,
+    pub fresh_layers: wgpu::Buffer,
+    pub values: wgpu::Buffer,
+    pub entries: wgpu::Buffer,
+}
+
+impl Tree {
+    /// The resources that the tree's shaders share.
+    pub fn bindings(&self) -> [Binding<'_>; 8] {
+        binding_array! {
+            adaptive: &self.uniform,
+            tree: &self.tree,
+            cells: &self.cells,
+            grid: &self.grid,
+            layer_of: &self.layer_of,
+            slots: &self.slots,
+            active_cells: &self.active_cells,
+            fresh_layers: &self.fresh_layers,
+        }
+    }
+
+    /// Makes an empty tree of buffers that held another.
+    pub fn reset(&self, recorder: &mut Recorder) {
+        let zeroed = [&self.tree, &self.cells, &self.grid, &self.active_cells, &self.fresh_layers, &self.entries];
+        zeroed.into_iter().for_each(|buffer| recorder.clear(buffer, None));
+        recorder.clear(&self.values, None);
+    }
+}
+
+/// Number of samples, and of maps that the last frame drew.
+pub(super) async fn stats(gpu: &Gpu, tree: &wgpu::Buffer) -> Result<Vec<(&'static str, f64)>, Error> {
+    let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(gpu, tree).await?);
+    Ok(vec![("maps", words[3].into()), ("maps drawn", words[7].into())])
+}
+
+/// Appends the stages that draw a run of slots, `layers` at a time; returns their range in the list.
+fn push_stages(stages: &mut Vec<MapStage>, layout: &Layers, layers: u32, slots: Range<u32>, level: u32) -> Range<u32> {
     let first = stages.len() as u32;
     let chunks = slots.start / layers..slots.end.div_ceil(layers);
     stages.extend(chunks.map(|chunk| {
         let base = chunk * layers;
-        maps.stage(level, base, slots.start.saturating_sub(base)..(slots.end - base).min(layers))
+        layout.stage(level, base, slots.start.saturating_sub(base)..(slots.end - base).min(layers))
     }));
     first..stages.len() as u32
 }
@@ -287,12 +336,12 @@ fn uniform_of(
     settings: &AdaptiveSamplingSettings,
     shape: Shape,
     capacity: u32,
-    picture: [u32; 2],
+    image: [u32; 2],
     light_size: Vec2,
 ) -> AdaptiveUniform {
-    let pixels = picture[0] as f32 * picture[1] as f32;
+    let pixels = image[0] as f32 * image[1] as f32;
     let (size, stride) = match settings.space {
-        Space::Camera => (picture, (pixels / POINTS).sqrt().ceil().max(1.0) as u32),
+        Space::Camera => (image, (pixels / POINTS).sqrt().ceil().max(1.0) as u32),
         Space::Light => ([LIGHT_VIEW; 2], 1),
     };
     let tiles = UVec2::from(size.map(|s| s.div_ceil(8 * stride)));

@@ -1,18 +1,22 @@
-//! A fixed number of shadow maps over the light [Heckbert, Herf 1997; Schwärzler 2009, section 3.2]: the brute force
-//! that tends to the truth as the maps get more and finer.
+//! Paul Heckbert, Michael Herf, 1997: Simulating soft shadows with graphics hardware, CMU-CS-97-104.
+//!
+//! A fixed number of shadow maps over the light, also section 3.2 of [Schwärzler 2009]: the brute force that tends to the
+//! truth as the maps get more and finer.
 
 mod pattern;
 
 pub use pattern::{Pattern, Sample, Weights, samples};
 
-use crate::passes::maps::light_maps::{Drawn, Entry, Evaluation, LightMaps, LightSamples, MapSlot, MapStage};
-use crate::gpu::recorder::Recorder;
-use crate::gpu::resources::{UniformArray, storage_bytes, storage_of};
-use crate::technique::{TechniqueAbout, TechniqueFactory, StatsFuture, InnerPicture, Memory, Technique};
 use crate::error::Error;
-use crate::input::frame::Frame;
 use crate::gpu::device::Gpu;
+use crate::gpu::recorder::Recorder;
+use crate::gpu::resources::storage_bytes;
+use crate::gpu::texture::Texture;
+use crate::input::frame::{Frame, MapInput};
+use crate::passes::maps::light_maps::draw::Layers;
+use crate::passes::maps::light_maps::{Entry, Evaluation, LightMaps, MapSlot, entry_list};
 use crate::technique::settings::Kind;
+use crate::technique::{StatsFuture, Technique, TechniqueAbout, TechniqueFactory};
 use glam::Vec2;
 
 crate::choices! {
@@ -29,15 +33,15 @@ crate::choices! {
 crate::settings! {
     /// Settings of [`UniformSampling`].
     pub struct UniformSamplingSettings {
-        /// Shadow maps, texels a side.
+        /// Shadow maps, texels per side.
         map: u32 = 512, Kind::Integer { min: 16, max: 16384 };
         /// Number of shadow maps; 1 is the light's centre.
         samples: u32 = 64, Kind::Integer { min: 1, max: 4096 };
-        /// How the samples lie on the light: an even sequence, one in each cell of a grid, or a grid from rim to rim.
+        /// Distribution of the samples: an even sequence, one in each cell of a grid, or a grid from border to border.
         pattern: Pattern = Pattern::LowDiscrepancy, Kind::Choice { options: Pattern::OPTIONS };
-        /// What the samples of a regular grid count: the area around them, or all the same as in the paper.
+        /// Weights on a regular grid: the area around each sample, or equal as in the paper.
         weights: Weights = Weights::Area, Kind::Choice { options: Weights::OPTIONS };
-        /// Width of the filter on each map in texels a side; 1 is a single lookup.
+        /// Width of the filter on each map in texels per side; 1 is a single lookup.
         pcf: u32 = 2, Kind::Integer { min: 1, max: 33 };
         /// All maps in one array, or one after the other through the same texture.
         evaluation: Evaluate = Evaluate::Array, Kind::Choice { options: Evaluate::OPTIONS };
@@ -47,72 +51,68 @@ crate::settings! {
 /// The stage of every map: all are drawn in one round.
 const STAGE: u32 = 0;
 
-/// Shadow of a rectangular or linear light by as many shadow maps as asked for.
+/// Shadow of a rectangular or linear light by a fixed number of shadow maps.
 pub struct UniformSampling {
     settings: UniformSamplingSettings,
     plan: Option<Plan>,
-    samples: Option<LightSamples>,
-    maps: Option<LightMaps>,
-    /// A round of drawing for each part of the maps that is in memory at once.
-    stages: Option<UniformArray<MapStage>>,
-    /// What the maps were drawn for, if they still hold it.
-    drawn: Option<Drawn>,
-    /// Maps that the last frame drew.
+    /// The maps of the last frame and their input.
+    drawn: Option<(Texture, MapInput)>,
+    /// Number of maps that the last frame drew.
     drawn_count: usize,
 }
 
-/// What depends on the light's size alone, and on how many maps there is room for.
+/// The samples of a light of one size, in parts of as many maps as there is room for.
 struct Plan {
     light_size: Vec2,
-    /// Maps that are in memory at once.
+    /// Maps in memory at a time.
     part: u32,
-    places: Vec<Vec2>,
-    entries: wgpu::Buffer,
-    slots: wgpu::Buffer,
+    samples: Vec<Sample>,
+    points: Vec<Vec2>,
     evaluation: Evaluation,
 }
 
 impl Plan {
     fn new(gpu: &Gpu, settings: &UniformSamplingSettings, light_size: Vec2) -> Result<Plan, Error> {
-        let list = samples(settings.pattern, settings.weights, settings.samples, light_size)?;
-        let count = list.len() as u32;
+        let samples = samples(settings.pattern, settings.weights, settings.samples, light_size)?;
+        let count = samples.len() as u32;
         let part = match settings.evaluation {
             Evaluate::Array => count.min(LightMaps::most(gpu, settings.map)),
             Evaluate::Accumulate => 1,
         };
-        let entries: Vec<Entry> = list
-            .iter()
-            .enumerate()
-            .map(|(i, s)| Entry {
-                sample: i as u32,
-                layer: i as u32 % part,
-                weight: s.weight,
-                reach_low: Vec2::ZERO,
-                reach_high: Vec2::ZERO,
-            })
-            .collect();
-        let slots: Vec<MapSlot> = (0..count).map(|sample| MapSlot { sample, stage: STAGE }).collect();
-        let bytes = [&count.to_le_bytes()[..], &[0; 4], &storage_bytes(&entries)].concat();
-        Ok(Plan {
-            light_size,
-            part,
-            places: list.iter().map(|s| s.place).collect(),
-            entries: crate::gpu::resources::buffer_of(gpu, "light samples", &bytes, wgpu::BufferUsages::STORAGE),
-            slots: storage_of(gpu, "map slots", &slots),
-            evaluation: Evaluation::new(gpu, settings.pcf, count, part)?,
-        })
+        let evaluation = Evaluation::new(gpu, settings.pcf, count, part)?;
+        let points = samples.iter().map(|s| s.place).collect();
+        Ok(Plan { light_size, part, samples, points, evaluation })
     }
-}
 
-impl Plan {
-    /// How many times maps are drawn and added up.
+    /// Number of times that maps are drawn and added up.
     fn parts(&self) -> u32 {
-        (self.places.len() as u32).div_ceil(self.part)
+        self.count().div_ceil(self.part)
+    }
+
+    fn count(&self) -> u32 {
+        self.samples.len() as u32
+    }
+
+    /// The list of samples with their layers and weights.
+    fn entries(&self) -> Vec<u8> {
+        let entry = |(i, s): (usize, &Sample)| Entry {
+            sample: i as u32,
+            layer: i as u32 % self.part,
+            weight: s.weight,
+            reach_low: Vec2::ZERO,
+            reach_high: Vec2::ZERO,
+        };
+        entry_list(&self.samples.iter().enumerate().map(entry).collect::<Vec<_>>())
+    }
+
+    fn slots(&self) -> Vec<u8> {
+        storage_bytes(&(0..self.count()).map(|sample| MapSlot { sample, stage: STAGE }).collect::<Vec<_>>())
     }
 }
 
 impl TechniqueFactory for UniformSampling {
     type Settings = UniformSamplingSettings;
+    type Technique = UniformSampling;
     const ABOUT: TechniqueAbout = TechniqueAbout {
         name: "uniform-sampling",
         title: "Light-source sampling",
@@ -120,62 +120,45 @@ impl TechniqueFactory for UniformSampling {
         summary: "a fixed number of shadow maps over the light; tends to the truth, at a price for each map",
     };
 
-    fn make(_gpu: &Gpu, settings: UniformSamplingSettings) -> Result<Self, Error> {
-        Ok(UniformSampling {
-            settings,
-            plan: None,
-            samples: None,
-            maps: None,
-            stages: None,
-            drawn: None,
-            drawn_count: 0,
-        })
+    fn make(_gpu: &Gpu, settings: UniformSamplingSettings) -> Result<UniformSampling, Error> {
+        Ok(UniformSampling { settings, plan: None, drawn: None, drawn_count: 0 })
     }
 }
 
 impl Technique for UniformSampling {
     fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
-        let gpu = recorder.gpu;
         if self.plan.as_ref().is_none_or(|p| p.light_size != frame.light.size) {
-            self.plan = Some(Plan::new(gpu, &self.settings, frame.light.size)?);
-            self.stages = None;
+            self.plan = None;
         }
-        let plan = self.plan.as_ref().expect("just made");
-        let (count, parts) = (plan.places.len() as u32, plan.parts());
-        let samples = LightSamples::ensure(&mut self.samples, gpu, frame, &plan.places);
-        let had_maps = self.maps.as_ref().is_some_and(|m| m.fits(gpu, self.settings.map, plan.part, &frame.casters));
-        let maps = LightMaps::ensure(&mut self.maps, gpu, self.settings.map, plan.part, &frame.casters)?;
-        let is_new = !had_maps || self.stages.is_none();
-        if is_new {
-            let stage = |p: u32| maps.stage(STAGE, p * plan.part, 0..plan.part.min(count - p * plan.part));
-            self.stages = Some(UniformArray::new(gpu, "map stages", &(0..parts).map(stage).collect::<Vec<_>>()));
-        }
-        let stages = self.stages.as_ref().expect("just made");
-        let now = Drawn::of(frame);
-        let are_same = !is_new && self.drawn.as_ref().is_some_and(|d| d.is(&now));
-        let still_there = frame.static_casters && parts == 1 && are_same;
+        let plan = match &mut self.plan {
+            Some(plan) => plan,
+            none => none.insert(Plan::new(recorder.gpu, &self.settings, frame.light.size)?),
+        };
+        let (count, parts) = (plan.count(), plan.parts());
+        let layers = Layers::new(recorder.gpu, plan.part, &frame.casters);
+        let maps = LightMaps::new(recorder, frame, self.settings.map, layers, &plan.points)?;
+        let key: [f32; 2] = plan.light_size.into();
+        let entries = recorder.buffer_of_key("sample weights", bytemuck::bytes_of(&key), || plan.entries());
+        let slots = recorder.buffer_of_key("map slots", bytemuck::bytes_of(&key), || plan.slots());
+        let input = MapInput::of(frame);
+        let same = |(texture, known): &(Texture, MapInput)| *texture == maps.texture && known.is(&input);
+        let still_valid = frame.static_casters && parts == 1 && self.drawn.as_ref().is_some_and(same);
         for part in 0..parts {
-            if !still_there {
-                maps.record(recorder, &frame.casters, samples, &plan.slots, stages, part)?;
+            if !still_valid {
+                let first = part * plan.part;
+                let stage = layers.stage(STAGE, first, 0..plan.part.min(count - first));
+                let uniform = recorder.uniform("map stage", &stage);
+                maps.record(recorder, &frame.casters, &slots, &stage, &uniform.as_entire_binding())?;
             }
-            plan.evaluation.record(recorder, frame, samples, maps, &plan.entries, part);
+            plan.evaluation.record(recorder, frame, &maps, &entries, part)?;
         }
-        self.drawn_count = if still_there { 0 } else { plan.places.len() };
-        self.drawn = Some(now);
+        self.drawn_count = if still_valid { 0 } else { plan.samples.len() };
+        self.drawn = Some((maps.texture, input));
         Ok(())
     }
 
-    fn inner_pictures(&self) -> Vec<InnerPicture> {
-        let maps = self.maps.iter().map(LightMaps::inner_picture);
-        maps.chain(self.plan.iter().map(|p| InnerPicture::of_light_points(&p.places))).collect()
-    }
-
-    fn memory(&self) -> Vec<Memory> {
-        self.maps.iter().flat_map(LightMaps::memory).collect()
-    }
-
     fn stats<'a>(&'a self, _gpu: &'a Gpu) -> StatsFuture<'a> {
-        let maps = self.plan.as_ref().map_or(0, |p| p.places.len());
+        let maps = self.plan.as_ref().map_or(0, |p| p.samples.len());
         Box::pin(std::future::ready(Ok(vec![("maps", maps as f64), ("maps drawn", self.drawn_count as f64)])))
     }
 }

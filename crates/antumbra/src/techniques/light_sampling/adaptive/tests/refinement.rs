@@ -2,6 +2,8 @@
 
 use super::twin::{Cell, Tree};
 use super::{Trial, gpu};
+use crate::bindings;
+use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::{Binding, ComputePipeline};
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::read_buffer;
@@ -10,8 +12,6 @@ use crate::technique::TechniqueFactory;
 use crate::techniques::light_sampling::adaptive::state::State;
 use crate::techniques::light_sampling::adaptive::{AdaptiveSampling, MapStage};
 use crate::techniques::light_sampling::uniform::Weights;
-use crate::gpu::device::Gpu;
-use crate::bindings;
 use glam::{DVec2, Vec2};
 use pollster::block_on;
 use std::collections::{BTreeMap, BTreeSet};
