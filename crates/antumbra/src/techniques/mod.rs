@@ -2,7 +2,7 @@
 
 use crate::technique::{TechniqueInfo, entry};
 
-// TODO(convert) pub mod alias_free;
+pub mod alias_free;
 pub mod backprojection;
 pub mod light_sampling;
 pub mod moments;
@@ -35,5 +35,5 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<light_sampling::uniform::UniformSampling>(),
     entry::<light_sampling::adaptive::AdaptiveSampling>(),
     // TODO(convert) entry::<alias_free::hard::AliasFree>(),
-    // TODO(convert) entry::<alias_free::soft::AliasFreeSoft>(),
+    entry::<alias_free::soft::AliasFreeSoft>(),
 ];
