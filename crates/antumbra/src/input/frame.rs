@@ -10,7 +10,7 @@ use crate::gpu::recorder::Recorder;
 use crate::{binding_array, gpu_struct};
 use antumbra_scene::{Camera, RectLight};
 use glam::{DMat4, DVec4, Mat3, Mat4, UVec2, Vec2, Vec3};
-use std::sync::Arc;
+use std::sync::{Arc, Weak};
 
 /// The camera as matrices.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -240,6 +240,27 @@ impl Frame {
             DVec4::new(0.0, 0.0, f64::from(f.near), 0.0),
         );
         (clip_from_light * light_from_world(&self.light)).as_mat4()
+    }
+}
+
+/// The input that a map from the light depends on. Equal ones give equal maps while no caster moves.
+#[derive(Clone, Debug)]
+pub struct MapInput {
+    light: RectLight,
+    frustum: ShadowFrustum,
+    casters: Weak<Casters>,
+}
+
+impl MapInput {
+    /// The input of the maps of this frame.
+    pub fn of(frame: &Frame) -> MapInput {
+        MapInput { light: frame.light, frustum: frame.frustum, casters: Arc::downgrade(&frame.casters) }
+    }
+}
+
+impl PartialEq for MapInput {
+    fn eq(&self, other: &MapInput) -> bool {
+        self.light == other.light && self.frustum == other.frustum && self.casters.ptr_eq(&other.casters)
     }
 }
 

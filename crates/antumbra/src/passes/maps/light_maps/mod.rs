@@ -66,26 +66,6 @@ impl LightSamples {
     }
 }
 
-/// What maps depend on beside their light points.
-#[derive(Clone)]
-pub struct Drawn {
-    light: RectLight,
-    frustum: ShadowFrustum,
-    casters: Weak<Casters>,
-}
-
-impl Drawn {
-    /// What maps of this frame are drawn for.
-    pub fn of(frame: &Frame) -> Drawn {
-        Drawn { light: frame.light, frustum: frame.frustum, casters: Arc::downgrade(&frame.casters) }
-    }
-
-    /// True if maps drawn for one are maps for the other, as long as no caster has moved.
-    pub fn is(&self, other: &Drawn) -> bool {
-        self.light == other.light && self.frustum == other.frustum && self.casters.ptr_eq(&other.casters)
-    }
-}
-
 /// The map of a light point: an oblique frustum whose window at the middle of the receivers' range of inverse distances
 /// is the one of the centre's map, wider by what the window moves between the ends of that range.
 fn sample(frame: &Frame, place: Vec2) -> LightSample {
