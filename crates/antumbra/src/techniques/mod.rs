@@ -7,7 +7,7 @@ use crate::technique::{TechniqueInfo, entry};
 // TODO(convert) pub mod light_sampling;
 // TODO(convert) pub mod moments;
 pub mod pcss;
-// TODO(convert) pub mod pvssm;
+pub mod pvssm;
 pub mod shadow_map;
 pub mod spec;
 // TODO(convert) pub mod ssm;
@@ -29,8 +29,8 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     // TODO(convert) entry::<moments::cssm::Cssm>(),
     // TODO(convert) entry::<backprojection::Backprojection>(),
     // TODO(convert) entry::<backprojection::packet::Packet>(),
-    // TODO(convert) entry::<pvssm::Pvssm>(),
-    // TODO(convert) entry::<pvssm::fvsm::Fvsm>(),
+    entry::<pvssm::Pvssm>(),
+    entry::<pvssm::Fvsm>(),
     // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),
     // TODO(convert) entry::<light_sampling::uniform::UniformSampling>(),
     // TODO(convert) entry::<light_sampling::adaptive::AdaptiveSampling>(),
