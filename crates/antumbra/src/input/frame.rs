@@ -243,22 +243,23 @@ impl Frame {
     }
 }
 
-/// The input that maps were drawn for, besides their own settings: kept maps are valid while it is the same.
-#[derive(Clone)]
-pub(crate) struct MapInput {
+/// The input that a map from the light depends on. Equal ones give equal maps while no caster moves.
+#[derive(Clone, Debug)]
+pub struct MapInput {
     light: RectLight,
     frustum: ShadowFrustum,
     casters: Weak<Casters>,
 }
 
 impl MapInput {
-    /// The input of a frame.
+    /// The input of the maps of this frame.
     pub fn of(frame: &Frame) -> MapInput {
         MapInput { light: frame.light, frustum: frame.frustum, casters: Arc::downgrade(&frame.casters) }
     }
+}
 
-    /// True if maps drawn for one are maps for the other, as long as no caster has moved.
-    pub fn is(&self, other: &MapInput) -> bool {
+impl PartialEq for MapInput {
+    fn eq(&self, other: &MapInput) -> bool {
         self.light == other.light && self.frustum == other.frustum && self.casters.ptr_eq(&other.casters)
     }
 }

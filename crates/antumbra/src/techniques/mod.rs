@@ -7,7 +7,7 @@ pub mod backprojection;
 pub mod light_sampling;
 pub mod moments;
 pub mod pcss;
-// TODO(convert) pub mod pvssm;
+pub mod pvssm;
 pub mod shadow_map;
 pub mod spec;
 pub mod ssm;
@@ -29,8 +29,9 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<moments::cssm::Cssm>(),
     entry::<backprojection::Backprojection>(),
     entry::<backprojection::packet::Packet>(),
-    // TODO(convert) entry::<pvssm::Pvssm>(),
+    entry::<pvssm::Pvssm>(),
     // TODO(convert) entry::<pvssm::fvsm::Fvsm>(),
+    entry::<pvssm::Fvsm>(),
     // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),
     entry::<light_sampling::uniform::UniformSampling>(),
     entry::<light_sampling::adaptive::AdaptiveSampling>(),

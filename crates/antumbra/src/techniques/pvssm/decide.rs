@@ -1,22 +1,22 @@
-//! The kd-tree over the tile grid and the shelves of the pool, on the CPU [Giegl and Wimmer 2007]: the paper's way, and
-//! what the shaders `kd_tree.wesl` and `decide.wesl` are held against.
+//! The kd-tree over the tile grid and the shelves of the pool on the CPU [Giegl and Wimmer 2007]: the paper's way, and the
+//! twin of `kd_tree.wesl` and `decide.wesl`.
 
 use super::PvssmSettings;
 use super::plan::{Decided, LARGEST_NODE, MOST_OF_ROUND, MOST_TILES, Tile};
 use glam::{UVec2, UVec4, Vec2};
 
-/// The resolution that each cell needs: texels over the whole window along x and y; 0 where nothing is asked for.
+/// The resolution that each cell needs: texels over the whole window along x and y; 0 where no kernel is.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid {
-    /// Level 0 is the grid, row by row; each after it has half its side and the maxima of four.
+    /// Level 0 is the grid, row by row; each further level has half the side and the maxima of four nodes.
     levels: Vec<Vec<Vec2>>,
     side: u32,
 }
 
 impl Grid {
-    /// From the pyramid as the GPU notes it: level after level, each node with what was noted there and no further.
-    pub fn of_noted(side: u32, noted: &[f32]) -> Grid {
-        let mut rest = noted;
+    /// From the pyramid as `predict.wesl` stores it, level after level.
+    pub fn of_stored(side: u32, stored: &[f32]) -> Grid {
+        let mut rest = stored;
         let mut levels: Vec<Vec<Vec2>> = Vec::new();
         for level in 0..=side.ilog2() {
             let count = ((side >> level) * (side >> level)) as usize;
@@ -24,7 +24,7 @@ impl Grid {
             levels.push(own.chunks_exact(2).map(Vec2::from_slice).collect());
             rest = after;
         }
-        // What was noted at a coarse level goes to all cells below.
+        // Resolutions of coarse levels are passed on to all cells below.
         for level in (1..levels.len()).rev() {
             let width = side >> (level - 1);
             for i in 0..levels[level - 1].len() as u32 {
@@ -50,7 +50,7 @@ impl Grid {
         Grid { levels, side }
     }
 
-    /// The finest that any cell of a node needs.
+    /// The highest resolution of the cells of a node.
     fn resolution(&self, node: Node) -> Vec2 {
         let level = node.level.min_element();
         let (first, count, width) = (node.low >> level, UVec2::ONE << (node.level - level), self.side >> level);
@@ -59,7 +59,7 @@ impl Grid {
         all.map(|at| self.levels[level as usize][at]).fold(Vec2::ZERO, Vec2::max)
     }
 
-    /// Texels that a node needs if all is coarser by a factor; zero if nothing in it is asked for.
+    /// Texels of a node if all tiles are coarser by a factor; zero for a node without kernels.
     fn texels(&self, node: Node, coarser: f32) -> UVec2 {
         let needed = self.resolution(node) / coarser * (UVec2::ONE << node.level).as_vec2() / self.side as f32;
         if needed.x <= 0.0 { UVec2::ZERO } else { UVec2::new(in_steps(needed.x), in_steps(needed.y)) }
@@ -81,7 +81,7 @@ impl Node {
     }
 }
 
-/// Rounded up to four steps an octave, and to whole nodes of the pyramid.
+/// Rounds up to four steps per octave, and to whole nodes of the pyramid.
 fn in_steps(texels: f32) -> u32 {
     let t = (texels.min(1.0e6).ceil() as u32).max(LARGEST_NODE);
     t.next_multiple_of((1 << (t.ilog2() - 2)).max(LARGEST_NODE))
@@ -113,7 +113,7 @@ fn split_axis(grid: &Grid, node: Node, texels: UVec2, coarser: f32, settings: &P
     cheapest.filter(|(cost, _)| *cost < THRIFT * area(texels)).map(|(_, axis)| axis)
 }
 
-/// The leaves, along the curve of Morton.
+/// The leaves, along the Morton curve.
 fn leaves(grid: &Grid, coarser: f32, settings: &PvssmSettings) -> Vec<(Node, UVec2)> {
     let mut found = Vec::new();
     let mut open = vec![Node { low: UVec2::ZERO, level: UVec2::splat(grid.side.ilog2()) }];
@@ -147,7 +147,7 @@ fn pack(leaves: &[(Node, UVec2)], settings: &PvssmSettings, coarser: f32) -> Dec
         }
         let cells = UVec2::ONE << node.level;
         let cells = UVec4::new(node.low.x, node.low.y, cells.x, cells.y);
-        tiles.push(Tile { cells, place: UVec2::new(at[0], at[1]), texels: size, round, fresh: 1 });
+        tiles.push(Tile { cells, position: UVec2::new(at[0], at[1]), texels: size, round, fresh: 1 });
         at[0] += size.x;
         of_round += 1;
     }
@@ -155,7 +155,7 @@ fn pack(leaves: &[(Node, UVec2)], settings: &PvssmSettings, coarser: f32) -> Dec
     Decided { tiles, rounds, kept: 0, coarser, shelf: at }
 }
 
-/// Which tiles are drawn, and where to; all of them anew.
+/// The plan for a grid; all tiles are drawn.
 pub(crate) fn decide(grid: &Grid, settings: &PvssmSettings) -> Decided {
     let mut coarser = 1.0;
     for _ in 0..16 {

@@ -1,119 +1,70 @@
 //! The filter: each pixel over the tiles that its kernel touches [Shen 2011, section 5.2, step 8].
 
-use super::drawing::{Drawing, RoundUniform};
-use super::plan::{MOST_ROUNDS, Plan, Tile};
-use super::{PvssmSettings, PvssmUniform, analysis::Analysis};
-use crate::input::frame::FrameUniform;
-use crate::gpu::recorder::{Recorder, Work, dispatch};
-use crate::gpu::resources::storage_buffer;
-use crate::gpu::shader::ShaderKey;
-use crate::technique::Memory;
-use crate::error::Error;
-use crate::input::frame::Frame;
-use crate::gpu::device::Gpu;
+use super::PvssmSettings;
+use super::analysis::Analysis;
+use super::drawing::Pool;
+use super::plan::{MOST_ROUNDS, Plan};
 use crate::bindings;
+use crate::error::Error;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::BufferDescription;
+use crate::gpu::shader::ShaderKey;
+use crate::input::frame::Frame;
 
-const BINS: &str = "pixel bins";
-const FILTER: &str = "filter";
-
-/// Which pixels each round visits, and what they have added up.
+/// The pixels of each round, and their sums.
 pub(crate) struct Filtering {
     /// See `bin_pixels.wesl`.
     blocks: wgpu::Buffer,
     /// Visible area and area of each listed pixel.
     sums: wgpu::Buffer,
-    size: [u32; 2],
 }
 
 impl Filtering {
-    /// Makes it in `slot` unless one for pictures of this size is there.
-    pub fn ensure<'a>(
-        slot: &'a mut Option<Filtering>,
-        gpu: &Gpu,
-        size: [u32; 2],
-        settings: &PvssmSettings,
-    ) -> Result<&'a Filtering, Error> {
-        if slot.as_ref().is_none_or(|f| f.size != size) {
-            let pixels = u64::from(size[0]) * u64::from(size[1]);
-            let blocks = u64::from(size[0].div_ceil(8)) * u64::from(size[1].div_ceil(8));
-            let words = 4 * MOST_ROUNDS as u64 + blocks * u64::from(settings.rounds);
-            *slot = Some(Filtering {
-                blocks: storage_buffer(gpu, "blocks of rounds", 4 * words),
-                sums: storage_buffer(gpu, "visible area and area", 8 * pixels),
-                size,
-            });
-        }
-        Ok(slot.as_ref().expect("just made"))
-    }
-
-    fn key(module: &'static str) -> ShaderKey {
-        let key = ShaderKey::new(module);
-        key
-    }
-
-    /// Lists the blocks of pixels that each round visits.
+    /// Lists the blocks of pixels whose kernels touch tiles of each round.
     pub fn bin_pixels(
-        &self,
-        frame: &Frame,
         recorder: &mut Recorder,
+        frame: &Frame,
+        settings: &PvssmSettings,
         analysis: &Analysis,
         plan: &Plan,
-    ) -> Result<(), Error> {
-        let key = Self::key("techniques::pvssm::bin_pixels");
+    ) -> Result<Filtering, Error> {
+        let [width, height] = frame.size.map(u64::from);
+        let (arguments, blocks) = (16 * MOST_ROUNDS as u64, width.div_ceil(8) * height.div_ceil(8));
+        let blocks = BufferDescription::new(arguments + 4 * blocks * u64::from(settings.rounds));
+        let filtering = Filtering {
+            blocks: recorder.buffer("blocks of rounds", blocks.cleared_head(arguments)),
+            sums: recorder.buffer("visible area and area", BufferDescription::new(8 * width * height)),
+        };
+        let key = ShaderKey::new("techniques::pvssm::bin_pixels");
         let bin = recorder.gpu.compute_pipeline(&key, "bin_pixels")?;
         let finish = recorder.gpu.compute_pipeline(&key, "finish_bins")?;
-        recorder.encoder.clear_buffer(&self.blocks, 0, Some(16 * MOST_ROUNDS as u64));
-        let set = frame.bindings(bindings! {
-            penumbra_pixels: &analysis.list.buffer,
-            penumbra_tiles: &analysis.list.tiles,
-            pvssm: &plan.uniform,
-            tile_plan: &plan.tiles,
-            tile_of_cell: &plan.cells,
-            kernels: &analysis.kernels,
-            round_blocks: &self.blocks,
-        });
-        recorder.compute_pass(BINS, |gpu, pass| {
-            pass.set_pipeline(&bin.pipeline);
-            pass.set_bind_group(0, &bin.bind_group(gpu, 0, &set), &[]);
-            dispatch(pass, &bin, Work::Indirect(&analysis.list.tiles, 0));
-            pass.set_pipeline(&finish.pipeline);
-            pass.set_bind_group(0, &finish.bind_group(gpu, 0, &set), &[]);
-            pass.dispatch_workgroups(1, 1, 1);
-        });
-        Ok(())
+        let own = bindings! { round_blocks: &filtering.blocks };
+        let set = [&frame.bindings()[..], &analysis.bindings(), &plan.bindings(), own];
+        recorder.compute("pixel bins", &bin, &set, Work::Indirect(&analysis.list.tiles, 0))?;
+        recorder.compute("pixel bins", &finish, &set, Work::Groups([1, 1, 1]))?;
+        Ok(filtering)
     }
 
-    /// Filters what lies in the tiles of a round.
+    /// Filters over the tiles of a round.
     pub fn soften(
         &self,
-        frame: &Frame,
         recorder: &mut Recorder,
+        frame: &Frame,
         analysis: &Analysis,
         plan: &Plan,
-        drawing: &Drawing,
+        pool: &Pool,
         round: u32,
     ) -> Result<(), Error> {
-        let pipeline = recorder.gpu.compute_pipeline(&Self::key("techniques::pvssm::soften"), "soften")?;
-        let number = drawing.rounds.at(round);
-        let set = frame.bindings(bindings! {
-            penumbra_pixels: &analysis.list.buffer,
-            penumbra_tiles: &analysis.list.tiles,
-            pvssm: &plan.uniform,
-            tile_plan: &plan.tiles,
-            tile_of_cell: &plan.cells,
-            kernels: &analysis.kernels,
+        let pipeline = recorder.gpu.compute_pipeline(&ShaderKey::new("techniques::pvssm::soften"), "soften")?;
+        let number = plan.rounds.at(round);
+        let own = bindings! {
             tile_round: &number,
             round_blocks: &self.blocks,
-            tile_pool: &drawing.pool,
-            tile_layers: &drawing.layers,
+            tile_pool: &pool.depth,
+            tile_layers: &pool.layers,
             sums: &self.sums,
-        });
-        recorder.compute(FILTER, &pipeline, &set, Work::Indirect(&self.blocks, 16 * u64::from(round)));
-        Ok(())
-    }
-
-    /// GPU memory.
-    pub fn memory(&self) -> Memory {
-        Memory::new(FILTER, self.blocks.size() + self.sums.size())
+        };
+        let set = [&frame.bindings()[..], &analysis.bindings(), &plan.bindings(), own];
+        recorder.compute("filter", &pipeline, &set, Work::Indirect(&self.blocks, 16 * u64::from(round)))
     }
 }

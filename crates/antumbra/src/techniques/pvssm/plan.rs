@@ -1,32 +1,50 @@
 //! The tile grid, its pyramid and the plan of tiles that is made of it [Shen 2011, section 5.2, steps 4 to 6].
 
+use super::PvssmSettings;
+use super::analysis::Analysis;
 use super::decide::{Grid, decide};
-use super::{PvssmSettings, PvssmUniform, analysis::Analysis};
-use crate::input::casters::Casters;
-use crate::input::frame::FrameUniform;
-use crate::gpu::recorder::{Recorder, Work};
-use crate::gpu::resources::{buffer_of, read_buffer, storage_buffer, uniform};
-use crate::gpu::shader::{HostStruct, ShaderKey};
-use crate::technique::{InnerContent, InnerPicture, Memory};
 use crate::error::Error;
-use crate::input::frame::Frame;
+use crate::gpu::bindings::Binding;
+use crate::gpu::debug_view::DebugLayout;
 use crate::gpu::device::Gpu;
-use crate::{bindings, gpu_struct};
+use crate::gpu::readback::read_buffer;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::{BufferDescription, UniformArray};
+use crate::gpu::shader::ShaderKey;
+use crate::input::casters::Casters;
+use crate::input::frame::Frame;
+use crate::{binding_array, bindings, gpu_struct};
 use glam::{UVec2, UVec4};
+use pollster::block_on;
 
 gpu_struct! {
-    /// A part of the map's window that is drawn at a resolution of its own.
+    /// A rectangle of the map's window that is drawn at a resolution of its own.
     pub(crate) struct Tile {
-        /// First cell of the grid, along x and y, and how many.
+        /// First cell of the grid and number of cells, each along x and y.
         cells: UVec4,
         /// First texel in the pool.
-        place: UVec2,
+        position: UVec2,
         /// Texels along x and y.
         texels: UVec2,
-        /// When it is in the pool.
+        /// The filling of the pool that holds it.
         round: u32,
         /// 1 if it is drawn in this frame, 0 if it is kept.
         fresh: u32,
+    }
+}
+
+gpu_struct! {
+    /// One filling of the pool.
+    pub(crate) struct RoundUniform {
+        round: u32,
+    }
+}
+
+gpu_struct! {
+    /// The input of a decision besides the grid.
+    pub(crate) struct DecisionUniform {
+        /// 1 if the tiles of the last plan are valid.
+        may_keep: u32,
     }
 }
 
@@ -44,18 +62,18 @@ const ROUND_WORDS: u64 = 10;
 const HEADER_WORDS: usize = 8 + 4 * MOST_ROUNDS;
 const TILE_WORDS: usize = 12;
 
-/// What was decided.
+/// A plan on the CPU.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Decided {
     /// The tiles, in the order of their rounds.
     pub tiles: Vec<Tile>,
-    /// How often the pool is filled.
+    /// Fillings of the pool.
     pub rounds: u32,
-    /// Tiles that are kept from the frame before.
+    /// Tiles that are kept from the last frame.
     pub kept: u32,
-    /// How much coarser than asked for all tiles are.
+    /// Factor by which all tiles are coarser than needed.
     pub coarser: f32,
-    /// Where the next tile may be put: x, y and height of the last shelf.
+    /// Position of the next tile, x and y, and height of the last shelf.
     pub shelf: [u32; 3],
 }
 
@@ -85,25 +103,27 @@ impl Decided {
         }
         for t in &self.tiles {
             words.extend(t.cells.to_array());
-            words.extend([t.place.x, t.place.y, t.texels.x, t.texels.y, t.round, t.fresh, 0, 0]);
+            words.extend([t.position.x, t.position.y, t.texels.x, t.texels.y, t.round, t.fresh, 0, 0]);
         }
         words
     }
 
-    fn of_words(words: &[u32]) -> Decided {
+    /// Reads a `TilePlan`. Waits for the GPU: for tests and reports.
+    pub async fn read(gpu: &Gpu, plan: &wgpu::Buffer) -> Result<Decided, Error> {
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(gpu, plan).await?);
         let tile = |w: &[u32]| Tile {
             cells: UVec4::from_slice(w),
-            place: UVec2::from_slice(&w[4..]),
+            position: UVec2::from_slice(&w[4..]),
             texels: UVec2::from_slice(&w[6..]),
             round: w[8],
             fresh: w[9],
         };
         let tiles = words[HEADER_WORDS..].chunks_exact(TILE_WORDS).take(words[0] as usize).map(tile).collect();
         let shelf = [words[4], words[5], words[6]];
-        Decided { tiles, rounds: words[1], kept: words[2], coarser: f32::from_bits(words[3]), shelf }
+        Ok(Decided { tiles, rounds: words[1], kept: words[2], coarser: f32::from_bits(words[3]), shelf })
     }
 
-    /// For each cell its tile's number plus one, 0 where there is none.
+    /// The number of each cell's tile plus one, 0 for none.
     pub fn cells(&self, grid: u32) -> Vec<u32> {
         let mut cells = vec![0; (grid * grid) as usize];
         for (i, tile) in self.tiles.iter().enumerate() {
@@ -115,15 +135,15 @@ impl Decided {
         cells
     }
 
-    /// Where the tiles end that a round draws anew, in the largest nodes from the pool's corner.
+    /// End of the tiles that a round draws, in largest nodes from the pool's corner.
     fn end_of_round(&self, round: u32) -> UVec2 {
         let drawn = self.tiles.iter().filter(|t| t.round == round && t.fresh != 0);
-        drawn.map(|t| (t.place + t.texels) / LARGEST_NODE).fold(UVec2::ZERO, UVec2::max)
+        drawn.map(|t| (t.position + t.texels) / LARGEST_NODE).fold(UVec2::ZERO, UVec2::max)
     }
 
-    /// The words of the indirect arguments of each round: the draw that wipes its tiles, the pyramid over them, the culling
-    /// of each batch.
-    fn arguments(&self, rounds: u32, batches: &[u32]) -> Vec<u32> {
+    /// The indirect arguments of each round: the draw that clears its tiles, the pyramid over them, the culling of each
+    /// batch, which takes so many workgroups.
+    pub fn arguments(&self, rounds: u32, batches: &[u32]) -> Vec<u32> {
         let of_round = |round: u32| {
             let drawn = self.tiles.iter().filter(|t| t.round == round && t.fresh != 0).count() as u32;
             let cull = batches.iter().flat_map(move |groups| {
@@ -138,190 +158,135 @@ impl Decided {
     }
 }
 
-/// Buffers of the decision.
+/// Label of the decision's passes.
+const DECISION: &str = "tile decision";
+
+/// Stores the resolution that each kernel needs in the grid's pyramid: two numbers per node.
+pub(crate) fn predict(
+    recorder: &mut Recorder,
+    frame: &Frame,
+    settings: &PvssmSettings,
+    uniform: &wgpu::Buffer,
+    analysis: &Analysis,
+) -> Result<wgpu::Buffer, Error> {
+    let side = settings.grid;
+    let nodes: u64 = (0..=side.ilog2()).map(|level| u64::from(side >> level).pow(2)).sum();
+    let help = "resolution that each cell of the window needs, as texels over the whole window: along x, along y";
+    let layout = DebugLayout::Numbers { stride: 2, channels: 2, size: [side; 2], list: None };
+    let grid = recorder.buffer("tile grid", BufferDescription::new(8 * nodes).cleared().debug(help, layout));
+    let pipeline = recorder.gpu.compute_pipeline(&ShaderKey::new("techniques::pvssm::predict"), "predict_resolution")?;
+    let own = bindings! { pvssm: uniform, grid_nodes: &grid };
+    let set = [&frame.bindings()[..], &analysis.bindings(), own];
+    recorder.compute("tile grid", &pipeline, &set, Work::Indirect(&analysis.list.tiles, 0))?;
+    Ok(grid)
+}
+
+/// The plan on the GPU, which [`Plan::decide`] or [`Plan::decide_on_the_cpu`] fills.
 pub(crate) struct Plan {
     /// A `PvssmUniform`.
-    pub uniform: wgpu::Buffer,
-    /// The pyramid over the grid: two resolutions a node.
-    grid: wgpu::Buffer,
-    /// A `TilePlan`; see `tiles.wesl`.
+    uniform: wgpu::Buffer,
+    /// A `TilePlan`; see `tiles.wesl`. It stays from frame to frame, as the tiles do.
     pub tiles: wgpu::Buffer,
     /// The tile of each cell.
     pub cells: wgpu::Buffer,
-    /// Indirect arguments; see [`Plan::wipe_offset`].
+    /// Indirect arguments; see [`Decided::arguments`].
     pub arguments: wgpu::Buffer,
-    batch_groups: wgpu::Buffer,
-    batches: Vec<u32>,
-    side: u32,
-    rounds: u32,
+    /// A `RoundUniform` for each round.
+    pub rounds: UniformArray,
+    /// Workgroups that cull each batch.
+    batch_groups: Vec<u32>,
+    most_rounds: u32,
 }
 
-/// Label of the decision's passes.
-const GRID: &str = "tile grid";
-const DECISION: &str = "tile decision";
-
 impl Plan {
-    /// Makes it in `slot` unless one for these casters is there.
-    pub fn ensure<'a>(slot: &'a mut Option<Plan>, gpu: &Gpu, casters: &Casters, settings: &PvssmSettings) -> &'a Plan {
-        let batches: Vec<u32> = casters.batches.iter().map(|b| b.cluster_count.div_ceil(64)).collect();
-        if slot.as_ref().is_none_or(|p| p.batches != batches) {
-            *slot = Some(Plan::new(gpu, batches, settings));
-        }
-        slot.as_ref().expect("just made")
-    }
-
-    fn new(gpu: &Gpu, batches: Vec<u32>, settings: &PvssmSettings) -> Plan {
-        let (side, rounds) = (settings.grid, settings.rounds);
-        let nodes: u64 = (0..=side.ilog2()).map(|level| u64::from(side >> level).pow(2)).sum();
-        // Never empty: a binding may not be.
-        let groups: Vec<u32> = if batches.is_empty() { vec![0] } else { batches.clone() };
+    /// A plan for these casters, to be filled.
+    pub fn ask(recorder: &mut Recorder, casters: &Casters, settings: &PvssmSettings, uniform: &wgpu::Buffer) -> Plan {
+        let batch_groups = batch_groups(casters);
+        let (side, rounds) = (u64::from(settings.grid), settings.rounds);
+        let mut buffer = |label, words| recorder.buffer(label, BufferDescription::new(4 * words));
         Plan {
-            uniform: uniform(gpu, "pvssm", &PvssmUniform::new(settings, false)),
-            grid: storage_buffer(gpu, "tile grid", 8 * nodes),
-            tiles: storage_buffer(gpu, "tile plan", 4 * (HEADER_WORDS + TILE_WORDS * MOST_TILES) as u64),
-            cells: storage_buffer(gpu, "tile of each cell", 4 * u64::from(side * side)),
-            arguments: storage_buffer(
-                gpu,
-                "tile arguments",
-                u64::from(rounds) * (4 * ROUND_WORDS + 12 * groups.len() as u64),
-            ),
-            batch_groups: buffer_of(
-                gpu,
-                "workgroups of batches",
-                bytemuck::cast_slice(&groups),
-                wgpu::BufferUsages::STORAGE,
-            ),
-            batches,
-            side,
-            rounds,
+            uniform: uniform.clone(),
+            tiles: buffer("tile plan", (HEADER_WORDS + TILE_WORDS * MOST_TILES) as u64),
+            cells: buffer("tile of each cell", side * side),
+            arguments: buffer("tile arguments", u64::from(rounds) * (ROUND_WORDS + 3 * batch_groups.len() as u64)),
+            rounds: recorder.uniforms("rounds", (0..rounds).map(|round| RoundUniform { round })),
+            batch_groups,
+            most_rounds: rounds,
         }
     }
 
-    /// Sets what counts for this frame.
-    pub fn update(&self, gpu: &Gpu, settings: &PvssmSettings, may_keep: bool) {
-        gpu.queue.write_buffer(&self.uniform, 0, &PvssmUniform::new(settings, may_keep).uniform_bytes());
-    }
-
-    fn key(module: &'static str) -> ShaderKey {
-        ShaderKey::new(module)
-    }
-
-    /// Notes in the grid what each kernel needs.
-    pub fn predict(&self, frame: &Frame, recorder: &mut Recorder, analysis: &Analysis) -> Result<(), Error> {
-        let pipeline = recorder.gpu.compute_pipeline(&Self::key("techniques::pvssm::predict"), "predict_resolution")?;
-        recorder.encoder.clear_buffer(&self.grid, 0, None);
-        let set = frame.bindings(bindings! {
-            penumbra_pixels: &analysis.list.buffer,
-            penumbra_tiles: &analysis.list.tiles,
-            pvssm: &self.uniform,
-            kernels: &analysis.kernels,
-            noted: &self.grid,
-        });
-        recorder.compute(GRID, &pipeline, &set, Work::Indirect(&analysis.list.tiles, 0));
-        Ok(())
-    }
-
-    /// Decides on the GPU. Returns how many rounds have to be recorded, as the host cannot know how many there are.
-    pub fn decide(&self, recorder: &mut Recorder) -> Result<u32, Error> {
-        let pipeline = recorder.gpu.compute_pipeline(&Self::key("techniques::pvssm::decide"), "decide")?;
+    /// Decides on the GPU; tiles of the plan `drawn` may be kept. Returns the number of rounds to record: all of them,
+    /// as the host does not learn how many there are.
+    pub fn decide(
+        &self,
+        recorder: &mut Recorder,
+        grid: &wgpu::Buffer,
+        drawn: Option<wgpu::Buffer>,
+    ) -> Result<u32, Error> {
+        // The pool is asked for whenever the plan is: it is the same one if the plan is.
+        let may_keep = u32::from(drawn.as_ref() == Some(&self.tiles));
+        let decision = recorder.uniform("tile decision", &DecisionUniform { may_keep });
+        let key = bytemuck::cast_slice(&self.batch_groups);
+        let groups = recorder.buffer_of_key("workgroups of batches", key, || key.to_vec());
+        let pipeline = recorder.gpu.compute_pipeline(&ShaderKey::new("techniques::pvssm::decide"), "decide")?;
         let set = bindings! {
             pvssm: &self.uniform,
+            decision: &decision,
             made_plan: &self.tiles,
             made_cells: &self.cells,
-            resolutions: &self.grid,
+            resolutions: grid,
             tile_arguments: &self.arguments,
-            batch_groups: &self.batch_groups,
+            batch_groups: &groups,
         };
-        recorder.compute(DECISION, &pipeline, set, Work::Groups([1, 1, 1]));
-        Ok(self.rounds)
+        recorder.compute(DECISION, &pipeline, &[set], Work::Groups([1, 1, 1]))?;
+        Ok(self.most_rounds)
     }
 
-    /// Submits what is recorded so far, waits for the grid and decides on the CPU. Returns the number of rounds.
-    pub fn decide_on_the_cpu(&self, recorder: &mut Recorder, settings: &PvssmSettings) -> Result<u32, Error> {
+    /// Submits the passes recorded so far, waits for the grid and decides on the CPU. Returns the number of rounds.
+    pub fn decide_on_the_cpu(
+        &self,
+        recorder: &mut Recorder,
+        grid: &wgpu::Buffer,
+        settings: &PvssmSettings,
+    ) -> Result<u32, Error> {
         let gpu = recorder.gpu;
-        let encoder = gpu.device.create_command_encoder(&Default::default());
-        let before = std::mem::replace(recorder.encoder, encoder);
+        let before = std::mem::replace(recorder.encoder(), gpu.device.create_command_encoder(&Default::default()));
         gpu.queue.submit([before.finish()]);
-        let decided = decide(&pollster::block_on(self.read_grid(gpu))?, settings);
+        let stored: Vec<f32> = bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, grid))?);
+        let decided = decide(&Grid::of_stored(settings.grid, &stored), settings);
         for (buffer, words) in [
             (&self.tiles, decided.words()),
-            (&self.cells, decided.cells(self.side)),
-            (&self.arguments, decided.arguments(self.rounds, &self.batches)),
+            (&self.cells, decided.cells(settings.grid)),
+            (&self.arguments, decided.arguments(self.most_rounds, &self.batch_groups)),
         ] {
             gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&words));
         }
         Ok(decided.rounds)
     }
 
-    /// The grid as it was noted. Waits for the GPU.
-    pub async fn read_grid(&self, gpu: &Gpu) -> Result<Grid, Error> {
-        let noted: Vec<f32> = bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.grid).await?);
-        Ok(Grid::of_noted(self.side, &noted))
+    /// The resources of `tiles.wesl`.
+    pub fn bindings(&self) -> [Binding<'_>; 3] {
+        binding_array! { pvssm: &self.uniform, tile_plan: &self.tiles, tile_of_cell: &self.cells }
     }
 
-    /// What was decided last. Waits for the GPU.
-    pub async fn read(&self, gpu: &Gpu) -> Result<Decided, Error> {
-        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.tiles).await?);
-        Ok(Decided::of_words(&words))
+    /// First byte of the arguments of the draw that clears a round's tiles.
+    pub fn clear_offset(&self, round: u32) -> u64 {
+        4 * u64::from(round) * (ROUND_WORDS + 3 * self.batch_groups.len() as u64)
     }
 
-    /// Puts a pyramid in the place of what kernels have noted.
-    #[cfg(test)]
-    pub fn write_grid(&self, gpu: &Gpu, noted: &[f32]) {
-        gpu.queue.write_buffer(&self.grid, 0, bytemuck::cast_slice(noted));
+    /// First byte of the arguments of two levels of the pyramid over a round's tiles.
+    pub fn reduce_offset(&self, round: u32, step: u32) -> u64 {
+        self.clear_offset(round) + 16 + 12 * u64::from(step)
     }
 
-    /// The tile of each cell, as decided last.
-    #[cfg(test)]
-    pub async fn read_cells(&self, gpu: &Gpu) -> Result<Vec<u32>, Error> {
-        Ok(bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.cells).await?))
-    }
-
-    /// The indirect arguments, as decided last.
-    #[cfg(test)]
-    pub async fn read_arguments(&self, gpu: &Gpu) -> Result<Vec<u32>, Error> {
-        Ok(bytemuck::pod_collect_to_vec(&read_buffer(gpu, &self.arguments).await?))
-    }
-
-    /// The indirect arguments of a plan.
-    #[cfg(test)]
-    pub fn arguments_of(&self, decided: &Decided) -> Vec<u32> {
-        decided.arguments(self.rounds, &self.batches)
-    }
-
-    /// Where the arguments of the draw that wipes a round's tiles begin, in bytes.
-    pub fn wipe_offset(&self, round: u32) -> u64 {
-        u64::from(round) * (4 * ROUND_WORDS + 12 * self.batches.len().max(1) as u64)
-    }
-
-    /// Where the arguments of two levels of the pyramid over a round's tiles begin, in bytes.
-    pub fn reduce_offset(&self, round: u32, step: u64) -> u64 {
-        self.wipe_offset(round) + 16 + 12 * step
-    }
-
-    /// Where the arguments of the culling of a batch in a round begin, in bytes.
+    /// First byte of the arguments of the culling of a batch in a round.
     pub fn cull_offset(&self, round: u32, batch: usize) -> u64 {
-        self.wipe_offset(round) + 4 * ROUND_WORDS + 12 * batch as u64
+        self.clear_offset(round) + 4 * ROUND_WORDS + 12 * batch as u64
     }
+}
 
-    /// For looking at.
-    pub fn inner_picture(&self) -> InnerPicture {
-        InnerPicture {
-            name: GRID,
-            help: "resolution that each cell of the window needs, as texels over the whole window: along x, along y",
-            content: InnerContent::Numbers {
-                numbers: self.grid.clone(),
-                stride: 2,
-                channels: 2,
-                size: [self.side; 2],
-                list: None,
-            },
-        }
-    }
-
-    /// GPU memory.
-    pub fn memory(&self) -> Memory {
-        let buffers = [&self.grid, &self.tiles, &self.cells, &self.arguments, &self.batch_groups];
-        Memory::new(DECISION, buffers.iter().map(|b| b.size()).sum())
-    }
+/// Workgroups that cull each batch, with one entry at least: a binding is never empty.
+pub(crate) fn batch_groups(casters: &Casters) -> Vec<u32> {
+    let groups: Vec<u32> = casters.batches.iter().map(|b| b.cluster_count.div_ceil(64)).collect();
+    if groups.is_empty() { vec![0] } else { groups }
 }

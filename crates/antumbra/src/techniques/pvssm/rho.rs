@@ -1,19 +1,19 @@
-//! How many texels a kernel needs, from its size in pixels [Shen 2011, section 5.1]: what the shader `rho.wesl` is given.
+//! The number of texels that a kernel needs, by its size in pixels [Shen 2011, section 5.1]: the input of `rho.wesl`.
 
 use super::settings::{PvssmSettings, Rho};
 
-/// A polynomial of log2 of the kernel's size in pixels, from the constant on.
+/// Coefficients of a polynomial of log2 of the kernel's size in pixels, the constant first.
 pub type Cubic = [f32; 4];
 
-/// What people wanted where casters move [Shen 2011, figure 9].
+/// The preference of the paper's subjects for moving casters [Shen 2011, figure 9].
 pub const DYNAMIC: Cubic = [0.667, 0.7794, 0.3967, -0.02716];
-/// What people wanted where nothing moves.
+/// Their preference for still scenes.
 pub const STATIC: Cubic = [0.5477, 1.406, -0.04687, -0.003944];
 
-/// Kernels in pixels for which the polynomials hold; beyond them the nearest end counts.
+/// Kernel sizes in pixels for which the polynomials are valid; others are clamped.
 pub const RANGE: [f64; 2] = [1.0, 512.0];
 
-/// The polynomial that settings ask for.
+/// The polynomial of these settings.
 pub fn coefficients(settings: &PvssmSettings) -> Cubic {
     match settings.rho {
         Rho::Dynamic | Rho::Fitted => DYNAMIC,

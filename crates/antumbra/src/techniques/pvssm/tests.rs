@@ -1,42 +1,55 @@
-//! The technique's parts against twins on the CPU, and what must hold whatever the tiles are.
+//! Parts of the technique against twins on the CPU, and invariants of every plan.
 
 mod conservative;
 mod plans;
 mod prediction;
 mod seams;
 
+use crate::error::Error;
 use crate::scene::SceneRenderer;
-use crate::testing::{Random, computed, gpu, submit};
+use crate::shadows::Shadows;
 use crate::techniques::spec::Spec;
-use crate::technique::Technique;
+use crate::testing::{Random, computed, gpu, submit};
 use antumbra_scene::{Scene, builtin};
 use pollster::block_on;
 
 /// A built-in scene with its geometry buffer drawn.
 fn drawn(scene: &Scene, size: [u32; 2]) -> SceneRenderer {
-    let renderer = SceneRenderer::new(gpu(), scene, size).unwrap_or_else(|e| panic!("{e}"));
-    submit(|recorder| renderer.record_geometry(recorder));
+    let mut renderer = SceneRenderer::new(gpu(), scene, size).unwrap_or_else(|e| panic!("{e}"));
+    submit_encoder(|encoder| renderer.record_geometry(gpu(), encoder, None));
     renderer
+}
+
+/// Records and submits, with every validation error returned.
+fn submit_encoder(record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), Error>) {
+    let gpu = gpu();
+    let result = block_on(gpu.checked(|| {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        record(&mut encoder)?;
+        gpu.queue.submit([encoder.finish()]);
+        Ok(())
+    }));
+    result.unwrap_or_else(|e| panic!("{e}"));
 }
 
 fn scene(spec: &str) -> Scene {
     builtin::build(spec).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn technique(spec: &str) -> Box<dyn Technique> {
+fn technique(spec: &str) -> Shadows {
     spec.parse::<Spec>().unwrap_or_else(|e| panic!("{e}")).make(gpu()).unwrap_or_else(|e| panic!("{spec}: {e}"))
 }
 
-/// What a technique makes of a drawn scene.
-fn shadowed(renderer: &SceneRenderer, technique: &mut dyn Technique) -> Vec<f32> {
+/// The visibility of a drawn scene.
+fn shadowed(renderer: &SceneRenderer, shadows: &mut Shadows) -> Vec<f32> {
     let [width, height] = renderer.frame.size;
     renderer.write_visibility(gpu(), &vec![-7.0; (width * height) as usize]);
-    submit(|recorder| renderer.record_shadow(technique, recorder));
+    submit_encoder(|encoder| shadows.record(gpu(), encoder, &renderer.frame));
     block_on(renderer.read_visibility(gpu())).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A figure of the last frame.
-fn figure(technique: &dyn Technique, name: &str) -> f64 {
-    let figures = block_on(technique.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
-    figures.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no figure {name}")).1
+/// A count of the last frame.
+fn stat(shadows: &Shadows, name: &str) -> f64 {
+    let stats = block_on(shadows.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
+    stats.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no count of {name}")).1
 }

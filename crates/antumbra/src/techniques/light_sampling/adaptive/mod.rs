@@ -176,7 +176,7 @@ impl AdaptiveSampling {
         let tree = plan.tree(recorder);
         let input = MapInput::of(frame);
         let last = self.last.as_ref().filter(|(known, texture, _)| *known == tree.tree && *texture == maps.texture);
-        let same_input = last.is_some_and(|(_, _, known)| known.is(&input));
+        let same_input = last.is_some_and(|(_, _, known)| *known == input);
         let (is_new, kept) = (last.is_none(), settings.evaluation == Evaluate::Array);
         if is_new {
             tree.reset(recorder);

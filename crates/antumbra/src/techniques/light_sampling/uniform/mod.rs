@@ -141,7 +141,7 @@ impl Technique for UniformSampling {
         let entries = recorder.buffer_of_key("sample weights", bytemuck::bytes_of(&key), || plan.entries());
         let slots = recorder.buffer_of_key("map slots", bytemuck::bytes_of(&key), || plan.slots());
         let input = MapInput::of(frame);
-        let same = |(texture, known): &(Texture, MapInput)| *texture == maps.texture && known.is(&input);
+        let same = |(texture, known): &(Texture, MapInput)| *texture == maps.texture && *known == input;
         let still_valid = frame.static_casters && parts == 1 && self.drawn.as_ref().is_some_and(same);
         for part in 0..parts {
             if !still_valid {

@@ -29,8 +29,8 @@ fn triangles(seed: u64) -> Scene {
     scene
 }
 
-/// How far a triangle is from overlapping a square around `middle`: the largest separation along any axis that can part
-/// them [Gottschalk 1996]; negative if they overlap.
+/// Distance between a triangle and a square around `middle` by the separating axis theorem [Gottschalk 1996]: the largest
+/// separation along any axis; negative if they overlap.
 fn separation(corners: &[DVec2; 3], middle: DVec2, half: f64) -> f64 {
     let mut widest = f64::NEG_INFINITY;
     let edges = (0..3).map(|k| (corners[(k + 1) % 3] - corners[k]).perp().normalize_or_zero());
@@ -51,12 +51,15 @@ fn no_texel_that_a_caster_touches_is_missed_and_none_far_from_all_is_drawn() {
         let renderer = drawn(&scene, [16, 16]);
         let frame = &renderer.frame;
         let [whole, plain] = [true, false].map(|conservative| {
-            let map = DepthMap::new(gpu(), SIZE, &frame.casters).expect("small");
-            submit(|recorder| match conservative {
-                true => map.record_touched(recorder, frame, "low-resolution map"),
-                false => map.record(recorder, &frame.casters, frame.map_clip_from_world()),
+            let mut map = None;
+            submit(|recorder| {
+                map = Some(match conservative {
+                    true => DepthMap::record_touched(recorder, frame, "low-resolution map", SIZE)?,
+                    false => DepthMap::of_light(recorder, frame, SIZE)?,
+                });
+                Ok(())
             });
-            let bytes = block_on(gpu().read_texture(&map.texture)).expect("reads");
+            let bytes = block_on(gpu().read_texture(&map.expect("drawn").texture)).expect("reads");
             bytemuck::pod_collect_to_vec::<u8, f32>(&bytes)
         });
         let f = &frame.frustum;
@@ -83,7 +86,7 @@ fn no_texel_that_a_caster_touches_is_missed_and_none_far_from_all_is_drawn() {
             let near: Vec<f64> = all.iter().map(|(corners, _)| separation(corners, middle, 0.5)).collect();
             let place = format!("texel ({}, {}) of {seed}", texel % SIZE, texel / SIZE);
             let depth = f64::from(whole[texel as usize]);
-            // What overlaps by less than rounding may or may not be drawn.
+            // An overlap smaller than rounding may or may not be drawn.
             if near.iter().any(|s| *s < -1e-3) {
                 touched += 1;
                 plain_missed += usize::from(plain[texel as usize] == 0.0);

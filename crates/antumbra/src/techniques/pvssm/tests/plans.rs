@@ -1,17 +1,19 @@
-//! The kd-tree and the shelves on the GPU against those on the CPU; and what every plan must promise.
+//! The kd-tree and the shelves on the GPU against those on the CPU, and the invariants of every plan.
 
 use super::super::decide::{Grid, decide};
-use super::super::plan::{Decided, MOST_OF_ROUND, Plan};
-use super::super::{PvssmSettings, settings::Decision};
-use super::{Random, drawn, figure, gpu, scene, shadowed, submit, technique};
+use super::super::plan::{Decided, MOST_OF_ROUND, Plan, batch_groups};
+use super::super::{Decision, PvssmSettings, PvssmUniform};
+use super::{Random, drawn, gpu, scene, shadowed, stat, submit, technique};
+use crate::gpu::readback::read_buffer;
+use crate::gpu::resources::{buffer_of, uniform};
 use glam::{UVec2, Vec2};
 use pollster::block_on;
 
-/// A grid in which a few places ask for much, a region for little, and the rest for nothing.
+/// A grid in which a few cells need many texels, a region few, and the rest none.
 fn random_grid(random: &mut Random, settings: &PvssmSettings) -> Vec<Vec2> {
     let side = settings.grid;
     let mut cells = vec![Vec2::ZERO; (side * side) as usize];
-    // No pixel notes more than a tile a cell.
+    // No pixel needs more than a tile per cell.
     let most = 10f32.powf(random.within(1.5, 5.0)).min((side * settings.tile) as f32);
     let mut fill = |low: UVec2, size: UVec2, value: Vec2| {
         let high = (low + size).min(UVec2::splat(side));
@@ -31,16 +33,16 @@ fn random_grid(random: &mut Random, settings: &PvssmSettings) -> Vec<Vec2> {
     cells
 }
 
-/// What every plan must promise of the cells that it is for.
+/// The invariants of a plan for these cells.
 fn check(decided: &Decided, cells: &[Vec2], settings: &PvssmSettings) {
     let side = settings.grid;
     let mut covered = vec![None; cells.len()];
     for (i, tile) in decided.tiles.iter().enumerate() {
         let [x, y, width, height] = tile.cells.to_array();
         assert!(tile.texels.cmpgt(UVec2::ZERO).all() && tile.texels.max_element() <= settings.tile, "{tile:?}");
-        assert!((tile.place + tile.texels).max_element() <= settings.tile, "beyond the pool: {tile:?}");
+        assert!((tile.position + tile.texels).max_element() <= settings.tile, "beyond the pool: {tile:?}");
         for other in decided.tiles[..i].iter().filter(|t| t.round == tile.round) {
-            let apart = (tile.place + tile.texels).cmple(other.place) | (other.place + other.texels).cmple(tile.place);
+            let apart = (tile.position + tile.texels).cmple(other.position) | (other.position + other.texels).cmple(tile.position);
             assert!(apart.any(), "{tile:?} and {other:?} share texels");
         }
         for cell in (y..y + height).flat_map(|row| (x..x + width).map(move |column| (row * side + column) as usize)) {
@@ -49,7 +51,7 @@ fn check(decided: &Decided, cells: &[Vec2], settings: &PvssmSettings) {
     }
     for (tile, wanted) in covered.iter().zip(cells) {
         if wanted.x > 0.0 {
-            let tile = &decided.tiles[tile.expect("every cell that is asked for is in a tile")];
+            let tile = &decided.tiles[tile.expect("every cell with a resolution is in a tile")];
             let resolution = tile.texels.as_vec2() / Vec2::new(tile.cells.z as f32, tile.cells.w as f32) * side as f32;
             // A single cell is no larger than a tile.
             let most = Vec2::splat((side * settings.tile) as f32);
@@ -75,7 +77,7 @@ fn settings(random: &mut Random) -> PvssmSettings {
 }
 
 #[test]
-fn every_plan_covers_what_is_asked_for_and_fits_the_pool() {
+fn every_plan_covers_the_needed_cells_and_fits_the_pool() {
     let mut random = Random(81);
     let (mut tiles, mut coarser) = (0, 0);
     for _ in 0..300 {
@@ -91,7 +93,7 @@ fn every_plan_covers_what_is_asked_for_and_fits_the_pool() {
 }
 
 #[test]
-fn nothing_asked_for_is_no_tile_and_one_wish_is_one_tile() {
+fn an_empty_grid_has_no_tile_and_one_cell_has_one() {
     let settings = PvssmSettings::default();
     let mut cells = vec![Vec2::ZERO; (settings.grid * settings.grid) as usize];
     let nothing = decide(&Grid::of_cells(settings.grid, cells.clone()), &settings);
@@ -114,75 +116,85 @@ fn a_tile_is_split_where_it_would_be_too_large() {
     assert_eq!(decided.tiles.len(), 11);
 }
 
+fn words(buffer: &wgpu::Buffer) -> Vec<u32> {
+    bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu(), buffer)).unwrap_or_else(|e| panic!("{e}")))
+}
+
 #[test]
 fn the_gpu_decides_as_the_cpu_does() {
     let renderer = drawn(&scene("square"), [16, 16]);
+    let casters = &renderer.frame.casters;
     let mut random = Random(82);
     for round in 0..40 {
         let settings = settings(&mut random);
         let cells = random_grid(&mut random, &settings);
-        let mut slot = None;
-        let plan = Plan::ensure(&mut slot, gpu(), &renderer.frame.casters, &settings);
-        // Some of the wishes are noted at a coarser level.
-        let mut noted: Vec<f32> = cells.iter().flat_map(|c| c.to_array()).collect();
+        // Some resolutions are stored at a coarser level.
+        let mut stored: Vec<f32> = cells.iter().flat_map(|c| c.to_array()).collect();
         for level in 1..=settings.grid.ilog2() {
             let count = (settings.grid >> level).pow(2);
-            noted.extend((0..2 * count).map(|_| 0.0));
+            stored.extend((0..2 * count).map(|_| 0.0));
             if random.unit() < 0.3 {
-                let node = noted.len() - 2 - 2 * (random.unit() * count as f32) as usize;
+                let node = stored.len() - 2 - 2 * (random.unit() * count as f32) as usize;
                 let value = random.within(10.0, 1000.0);
-                noted[node..node + 2].fill(value);
+                stored[node..node + 2].fill(value);
             }
         }
-        plan.write_grid(gpu(), &noted);
-        submit(|recorder| plan.decide(recorder).map(|_| ()));
-        let by_gpu = block_on(plan.read(gpu())).unwrap_or_else(|e| panic!("{e}"));
-        let by_cpu = decide(&Grid::of_noted(settings.grid, &noted), &settings);
+        let grid = buffer_of(gpu(), "tile grid", bytemuck::cast_slice(&stored), wgpu::BufferUsages::STORAGE);
+        let pvssm = uniform(gpu(), "pvssm", &PvssmUniform::new(&settings));
+        let mut made = None;
+        submit(|recorder| {
+            let plan = Plan::ask(recorder, casters, &settings, &pvssm);
+            plan.decide(recorder, &grid, None)?;
+            made = Some(plan);
+            Ok(())
+        });
+        let plan = made.expect("decided");
+        let by_gpu = block_on(Decided::read(gpu(), &plan.tiles)).unwrap_or_else(|e| panic!("{e}"));
+        let by_cpu = decide(&Grid::of_stored(settings.grid, &stored), &settings);
         assert_eq!(format!("{by_gpu:?}"), format!("{by_cpu:?}"), "plan {round} with {settings:?}");
-        let cells = block_on(plan.read_cells(gpu())).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(cells, by_cpu.cells(settings.grid), "cells of plan {round}");
-        let arguments = block_on(plan.read_arguments(gpu())).unwrap_or_else(|e| panic!("{e}"));
-        assert_eq!(arguments, plan.arguments_of(&by_cpu), "arguments of plan {round}");
+        assert_eq!(words(&plan.cells), by_cpu.cells(settings.grid), "cells of plan {round}");
+        let arguments = by_cpu.arguments(settings.rounds, &batch_groups(casters));
+        assert_eq!(words(&plan.arguments), arguments, "arguments of plan {round}");
     }
 }
 
 #[test]
-fn waiting_for_the_grid_gives_the_same_picture() {
+fn waiting_for_the_grid_gives_the_same_visibility() {
     assert_ne!(PvssmSettings::default().decision, Decision::Wait);
     for name in ["fence:slats=12", "plant"] {
         let renderer = drawn(&scene(name), [96, 96]);
         let [gpu, cpu] = ["gpu", "wait"].map(|who| {
             let mut one = technique(&format!("pvssm:map=256,tile=256,rounds=16,decision={who}"));
-            let picture = shadowed(&renderer, &mut *one);
-            println!("{name}, {who}: {} tiles in {} rounds", figure(&*one, "tiles"), figure(&*one, "rounds"));
-            picture
+            let visibility = shadowed(&renderer, &mut one);
+            println!("{name}, {who}: {} tiles in {} rounds", stat(&one, "tiles"), stat(&one, "rounds"));
+            visibility
         });
-        assert!(gpu == cpu, "{name}: the decision changes the picture");
+        assert!(gpu == cpu, "{name}: the decision changes the visibility");
     }
 }
 
 #[test]
-fn tiles_are_kept_while_light_and_static_casters_and_drawn_anew_when_they_do_not() {
+fn tiles_are_kept_while_light_and_casters_are_static_only() {
     let mut renderer = drawn(&scene("fence:slats=12"), [96, 96]);
     let mut one = technique("pvssm:map=256,tile=1024");
-    let first = shadowed(&renderer, &mut *one);
-    assert_eq!(figure(&*one, "tiles kept"), 0.0);
-    let tiles = figure(&*one, "tiles");
+    let first = shadowed(&renderer, &mut one);
+    assert_eq!(stat(&one, "tiles kept"), 0.0);
+    let tiles = stat(&one, "tiles");
     renderer.frame.static_casters = true;
-    let second = shadowed(&renderer, &mut *one);
-    assert_eq!(figure(&*one, "tiles kept"), tiles, "all of {tiles} tiles");
-    assert!(second == first, "kept tiles show something else");
-    // The light moves: nothing is kept, and the picture is that of an instance that knows nothing of before.
+    let second = shadowed(&renderer, &mut one);
+    assert_eq!(stat(&one, "tiles kept"), tiles, "all of {tiles} tiles");
+    assert!(second == first, "kept tiles differ");
+    // The light moves: no tile is kept, and the visibility is that of a new instance.
     let mut light = renderer.frame.light;
     light.center.x += 0.3;
     let (view, frustum) = (renderer.frame.view, renderer.frame.frustum);
     renderer.frame.update(gpu(), view, light, frustum);
-    let moved = shadowed(&renderer, &mut *one);
-    assert_eq!(figure(&*one, "tiles kept"), 0.0);
-    assert!(moved == shadowed(&renderer, &mut *technique("pvssm:map=256,tile=1024")), "an old tile is used");
+    let moved = shadowed(&renderer, &mut one);
+    assert_eq!(stat(&one, "tiles kept"), 0.0);
+    assert!(moved == shadowed(&renderer, &mut technique("pvssm:map=256,tile=1024")), "an old tile is used");
     assert!(moved != first, "the light has moved");
-    // And a caster may have: the host says so.
+    // A caster may have moved.
     renderer.frame.static_casters = false;
-    shadowed(&renderer, &mut *one);
-    assert_eq!(figure(&*one, "tiles kept"), 0.0);
+    shadowed(&renderer, &mut one);
+    assert_eq!(stat(&one, "tiles kept"), 0.0);
 }

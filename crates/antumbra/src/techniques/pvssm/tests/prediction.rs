@@ -1,14 +1,12 @@
 //! The number of texels that a kernel needs, against the paper's polynomials and its equations 4 and 5 in double
 //! precision.
 
-use super::super::plan::Tile;
 use super::super::rho::{self, DYNAMIC, STATIC};
 use super::super::{PvssmSettings, PvssmUniform, Rho};
 use super::{Random, computed, gpu};
 use crate::bindings;
-use crate::input::frame::FrameUniform;
 use crate::gpu::resources::uniform;
-use crate::gpu::shader::{HostStruct, ShaderKey};
+use crate::gpu::shader::ShaderKey;
 use glam::{DMat2, DVec2};
 
 const KERNEL: &str = "
@@ -29,9 +27,8 @@ const KERNEL: &str = "
 
 /// Sizes in pixels along x and y and the texels for them, for footprints (across, down) and halves of the light's box.
 fn on_the_gpu(settings: &PvssmSettings, cases: &[[f32; 8]]) -> Vec<[f32; 4]> {
-    let structs = format!("{KERNEL}\n{}{}{}", PvssmUniform::wgsl(), Tile::wgsl(), FrameUniform::wgsl());
-    let key = ShaderKey { structs, ..ShaderKey::new("host") };
-    let pvssm = uniform(gpu(), "pvssm", &PvssmUniform::new(settings, false));
+    let key = ShaderKey::of_source(KERNEL);
+    let pvssm = uniform(gpu(), "pvssm", &PvssmUniform::new(settings));
     let set = bindings! { pvssm: &pvssm };
     computed(&key, cases.as_flattened(), set, cases.len() as u32, 16 * cases.len() as u64)
 }
@@ -48,7 +45,7 @@ fn the_polynomials_are_those_of_figure_9() {
 }
 
 #[test]
-fn a_kernel_is_given_the_texels_that_its_size_in_pixels_asks_for() {
+fn a_kernel_gets_the_texels_for_its_size_in_pixels() {
     let mut random = Random(83);
     let cases: Vec<[f32; 8]> = (0..4000)
         .map(|_| {
@@ -69,7 +66,7 @@ fn a_kernel_is_given_the_texels_that_its_size_in_pixels_asks_for() {
             let phi = DMat2::from_cols(0.5 * DVec2::new(c[0], c[1]), 0.5 * DVec2::new(c[2], c[3]));
             let s = DMat2::from_diagonal(DVec2::new(c[4], c[5]));
             let variance = phi * phi.transpose() + s * s.transpose();
-            // The Cholesky factor's columns are the kernel's axes; eq. 4 looks at their parts along the map's axes.
+            // The Cholesky factor's columns are the kernel's axes; eq. 4 takes their components along the map's axes.
             let u = variance.x_axis.x.sqrt();
             let v = (variance.y_axis.y - (variance.x_axis.y / u).powi(2)).sqrt();
             let n = [DVec2::X * u, DVec2::Y * v].map(|axis| (phi.inverse() * axis).length());

@@ -1,11 +1,12 @@
 //! Kernels that overlap several tiles: many tiles give what one map of the same resolution gives.
 
-use super::super::PvssmSettings;
 use super::super::analysis::Analysis;
-use super::super::drawing::Drawing;
+use super::super::drawing::{Drawing, Pool};
 use super::super::filtering::Filtering;
-use super::super::plan::Plan;
+use super::super::plan::{Decided, Plan};
+use super::super::{PvssmSettings, PvssmUniform};
 use super::{drawn, gpu, scene, submit};
+use crate::gpu::resources::{buffer_of, uniform};
 use crate::scene::SceneRenderer;
 use pollster::block_on;
 
@@ -13,37 +14,35 @@ const SIZE: [u32; 2] = [128, 96];
 /// Texels over the whole window.
 const RESOLUTION: f32 = 256.0;
 
-/// The picture if every cell asks for the same, whatever the kernels ask for, and the number of tiles and rounds.
+/// The visibility if every cell needs the same resolution, and the number of tiles and rounds.
 fn with_constant_resolution(renderer: &SceneRenderer, tile: u32) -> (Vec<f32>, [u32; 2]) {
     let settings = PvssmSettings { map: 256, tile, rounds: 16, grid: 16, thrifty: false, ..PvssmSettings::default() };
     let (frame, gpu) = (&renderer.frame, gpu());
-    let (mut analysis, mut plan, mut drawing, mut filtering) = (None, None, None, None);
-    let analysis = Analysis::ensure(&mut analysis, gpu, frame, &settings).expect("small");
-    let plan = Plan::ensure(&mut plan, gpu, &frame.casters, &settings);
-    let drawing = Drawing::ensure(&mut drawing, gpu, &frame.casters, &settings).expect("small");
-    let filtering = Filtering::ensure(&mut filtering, gpu, SIZE, &settings).expect("small");
     let nodes: u32 = (0..=4).map(|level| (16u32 >> level).pow(2)).sum();
-    let mut noted = vec![0.0; 2 * nodes as usize];
-    noted[..2 * 256].fill(RESOLUTION);
+    let mut stored = vec![0.0; 2 * nodes as usize];
+    stored[..2 * 256].fill(RESOLUTION);
+    let grid = buffer_of(gpu, "tile grid", bytemuck::cast_slice(&stored), wgpu::BufferUsages::STORAGE);
+    let pvssm = uniform(gpu, "pvssm", &PvssmUniform::new(&settings));
+    let mut made = None;
     submit(|recorder| {
-        analysis.low_resolution_map(frame, recorder)?;
-        analysis.list_pixels(frame, recorder)?;
-        analysis.shape_kernels(frame, recorder, plan)
-    });
-    plan.write_grid(gpu, &noted);
-    submit(|recorder| {
-        plan.decide(recorder)?;
-        filtering.bin_pixels(frame, recorder, analysis, plan)?;
+        let analysis = Analysis::record(recorder, frame, &settings, &pvssm)?;
+        let plan = Plan::ask(recorder, &frame.casters, &settings, &pvssm);
+        plan.decide(recorder, &grid, None)?;
+        let filtering = Filtering::bin_pixels(recorder, frame, &settings, &analysis, &plan)?;
+        let drawing = Drawing::prepare(recorder, frame, &settings)?;
+        let pool = Pool::ask(recorder, tile);
         for round in 0..settings.rounds {
-            drawing.draw_tiles(frame, recorder, plan, round)?;
-            drawing.reduce_tiles(frame, recorder, plan, round)?;
-            filtering.soften(frame, recorder, analysis, plan, drawing, round)?;
+            drawing.cull(recorder, &frame.casters, &plan, round)?;
+            drawing.draw_tiles(recorder, &frame.casters, &plan, &pool, round)?;
+            pool.reduce_tiles(recorder, frame, &plan, round)?;
+            filtering.soften(recorder, frame, &analysis, &plan, &pool, round)?;
         }
+        made = Some(plan.tiles);
         Ok(())
     });
-    let decided = block_on(plan.read(gpu)).expect("reads");
-    let picture = block_on(renderer.read_visibility(gpu)).expect("reads");
-    (picture, [decided.tiles.len() as u32, decided.rounds])
+    let decided = block_on(Decided::read(gpu, &made.expect("decided"))).expect("reads");
+    let visibility = block_on(renderer.read_visibility(gpu)).expect("reads");
+    (visibility, [decided.tiles.len() as u32, decided.rounds])
 }
 
 #[test]
