@@ -59,7 +59,7 @@ pub fn computed<T: bytemuck::Pod>(
 
 /// Runs an entry point of a kernel at each pixel of a scene's frame and reads the numbers that it writes (`output`).
 pub fn at_pixels(
-    renderer: &mut SceneRenderer,
+    renderer: &SceneRenderer,
     kernel: &str,
     entry: &'static str,
     more: &[Binding],

@@ -37,7 +37,8 @@ fn scene(spec: &str) -> Scene {
 }
 
 fn technique(spec: &str) -> Shadows {
-    spec.parse::<Spec>().unwrap_or_else(|e| panic!("{e}")).make(gpu()).unwrap_or_else(|e| panic!("{spec}: {e}"))
+    let parsed: Spec = spec.parse().unwrap_or_else(|e| panic!("{e}"));
+    Shadows::from_spec(gpu(), &parsed).unwrap_or_else(|e| panic!("{spec}: {e}"))
 }
 
 /// The visibility of a drawn scene.

@@ -1,14 +1,14 @@
-//! What is stored of depths, filtered, and read as a bound: `passes/moments`, `shaders/chebyshev.wesl`,
+//! Values stored of depths, filtered, and read as a bound: `passes/maps/moments`, `shaders/chebyshev.wesl`,
 //! `shaders/hamburger.wesl`, `shaders/fourier.wesl`.
 
+use super::{BlurUniform, DepthWarp, TexelFormat, fourier};
 use crate::bindings;
-use crate::gpu::recorder::Recorder;
+use crate::gpu::readback::read_buffer;
 use crate::gpu::recorder::Work;
-use crate::gpu::resources::{Texture, buffer_of, read_buffer, storage_buffer, uniform};
-use crate::gpu::shader::{HostStruct, ShaderKey};
-use crate::input::frame::FrameUniform;
-use crate::passes::maps::moments::{BlurUniform, DepthWarp, TexelFormat, fourier};
-use crate::testing::{Random, Worst, evaluate, gpu};
+use crate::gpu::resources::{buffer_of, storage_buffer, uniform};
+use crate::gpu::shader::ShaderKey;
+use crate::gpu::texture::{Texture, TextureDescription};
+use crate::testing::{Random, Worst, evaluate, gpu, submit};
 use glam::UVec2;
 use pollster::block_on;
 
@@ -16,13 +16,17 @@ use pollster::block_on;
 const BLOCKS: u32 = 64;
 
 fn key(kernel: &str, format: TexelFormat) -> ShaderKey {
-    let structs = format!("{kernel}\n{}{}", FrameUniform::wgsl(), DepthWarp::wgsl());
-    ShaderKey { structs, ..ShaderKey::new("host") }.feature("split", format.is_split()).storing(format.storage())
+    ShaderKey::of_source(kernel).feature("split", format.is_split()).storing(format.storage())
 }
 
 fn map(format: TexelFormat, size: u32, mips: u32) -> Texture {
-    let usage = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::TEXTURE_BINDING;
-    Texture::array(gpu(), "moments", [size; 2], 1, mips, format.texture(), usage)
+    let description = TextureDescription::new([size; 2], format.texture(), "moments").layers(1).mips(mips);
+    Texture::new(gpu(), "moments", description)
+}
+
+/// The numbers in a buffer.
+fn floats(buffer: &wgpu::Buffer) -> Vec<f32> {
+    bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu(), buffer)).expect("reads"))
 }
 
 /// The bound for each pair of depths (rows) and number of texels out of 64 that the receiver has (columns), after the
@@ -66,27 +70,18 @@ fn bounds(format: TexelFormat, pairs: &[[f32; 2]]) -> Vec<f32> {
         .feature("split", format.is_split())
         .storing(format.storage());
     let chain = gpu.compute_pipeline(&chain, "reduce_level").unwrap_or_else(|e| panic!("{e}"));
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let mut recorder = Recorder::new(gpu, &mut encoder);
-    recorder.compute(
-        "fill",
-        &fill,
-        bindings! { pairs: &input, texels: &levels[0], warp: &warp },
-        Work::Threads([size, size, 1]),
-    );
-    for (level, pair) in levels.windows(2).enumerate() {
-        let side = size >> (level + 1);
-        recorder.compute(
-            "mips",
-            &chain,
-            bindings! { finer: &pair[0], coarser: &pair[1] },
-            Work::Threads([side, side, 1]),
-        );
-    }
-    let set = bindings! { coarse: &levels[3], pairs: &input, bound: &output, warp: &warp };
-    recorder.compute("read", &look, set, Work::Threads([BLOCKS, BLOCKS, 1]));
-    gpu.queue.submit([encoder.finish()]);
-    bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, &output)).expect("reads"))
+    submit(|recorder| {
+        let set = bindings! { pairs: &input, texels: &levels[0], warp: &warp };
+        recorder.compute("fill", &fill, &[set], Work::Threads([size, size, 1]))?;
+        for (level, pair) in levels.windows(2).enumerate() {
+            let side = size >> (level + 1);
+            let set = bindings! { finer: &pair[0], coarser: &pair[1] };
+            recorder.compute("mips", &chain, &[set], Work::Threads([side, side, 1]))?;
+        }
+        let set = bindings! { coarse: &levels[3], pairs: &input, bound: &output, warp: &warp };
+        recorder.compute("read", &look, &[set], Work::Threads([BLOCKS, BLOCKS, 1]))
+    });
+    floats(&output)
 }
 
 /// Depths in [0, 1] of an occluder and of a receiver that are `apart` at least.
@@ -135,11 +130,9 @@ fn a_mip_level_is_the_mean_over_its_area_and_a_blur_a_gaussian() {
     let size = 37u32;
     let mut random = Random(3);
     let values: Vec<[f32; 2]> = (0..size * size).map(|_| [random.unit(), random.unit() - 0.5]).collect();
-    let usage = wgpu::TextureUsages::STORAGE_BINDING
-        | wgpu::TextureUsages::TEXTURE_BINDING
-        | wgpu::TextureUsages::COPY_SRC
-        | wgpu::TextureUsages::COPY_DST;
-    let texture = |side| Texture::array(gpu, "test", [side; 2], 1, 1, wgpu::TextureFormat::Rg32Float, usage);
+    let uses = wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_SRC | wgpu::TextureUsages::COPY_DST;
+    let description = |side| TextureDescription::new([side; 2], wgpu::TextureFormat::Rg32Float, "test").layers(1);
+    let texture = |side| Texture::new(gpu, "test", description(side).usage(uses));
     let (source, coarse, blurred) = (texture(size), texture(size / 2), texture(size));
     gpu.queue.write_texture(
         source.texture.as_image_copy(),
@@ -152,12 +145,12 @@ fn a_mip_level_is_the_mean_over_its_area_and_a_blur_a_gaussian() {
     let key = |module| ShaderKey::new(module).storing(TexelFormat::Rg32Float.storage());
     let reduce = gpu.compute_pipeline(&key("passes::maps::moments::mip_chain"), "reduce_level").expect("compiles");
     let blur = gpu.compute_pipeline(&key("passes::maps::moments::blur"), "blur_texels").expect("compiles");
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let mut recorder = Recorder::new(gpu, &mut encoder);
-    recorder.compute("mip", &reduce, bindings! { finer: &source, coarser: &coarse }, Work::Threads([18, 18, 1]));
-    let set = bindings! { blur: &kernel_buffer, source: &source, blurred: &blurred };
-    recorder.compute("blur", &blur, set, Work::Threads([size, size, 1]));
-    gpu.queue.submit([encoder.finish()]);
+    submit(|recorder| {
+        let set = bindings! { finer: &source, coarser: &coarse };
+        recorder.compute("mip", &reduce, &[set], Work::Threads([18, 18, 1]))?;
+        let set = bindings! { blur: &kernel_buffer, source: &source, blurred: &blurred };
+        recorder.compute("blur", &blur, &[set], Work::Threads([size, size, 1]))
+    });
     let read =
         |t: &Texture| -> Vec<[f32; 2]> { bytemuck::pod_collect_to_vec(&block_on(gpu.read_texture(t)).expect("reads")) };
     let at = |x: i32, y: u32| f64::from(values[(y * size) as usize + x.clamp(0, size as i32 - 1) as usize][0]);
@@ -243,7 +236,7 @@ fn sixteen_bits(fraction: f64) -> f64 {
     (fraction.clamp(0.0, 1.0) * 65535.0).round() / 65535.0
 }
 
-/// What `techniques/msm/warp.wesl` stores of moments in 16 bits each.
+/// The values that `techniques/moments/msm/warp.wesl` stores of moments in 16 bits each.
 fn fractions_of(m: [f64; 4]) -> [f64; 4] {
     let root = 3f64.sqrt();
     [
@@ -287,7 +280,6 @@ fn sixteen_bits_of_the_basis_lose_less_than_sixteen_bits_of_the_moments() {
             output[to + 5u] = hidden_part(basis, z, 6.0e-5);
             output[to + 6u] = hidden_part(at4(at + 8u), z, 6.0e-5);
         }";
-    let text = format!("{kernel}\n{}{}", FrameUniform::wgsl(), DepthWarp::wgsl());
     // Determinant of the matrix (1 m1 m2; m1 m2 m3; m2 m3 m4), which is 0 for two surfaces and below for what no surfaces
     // have, of moments that are moved as hamburger.wesl does.
     let possible = |m: [f64; 4]| {
@@ -298,7 +290,7 @@ fn sixteen_bits_of_the_basis_lose_less_than_sixteen_bits_of_the_moments() {
     let (mut there_and_back, mut too_dark) = (0f64, Worst::default());
     let (mut lost, mut off, mut impossible) = ([0f64; 2], [0f64; 2], [0usize; 2]);
     let count = cases.len() as f64;
-    for (got, (points, z, exact, plain)) in evaluate(&text, &input, 13, 7).iter().zip(&cases) {
+    for (got, (points, z, exact, plain)) in evaluate(kernel, &input, 13, 7).iter().zip(&cases) {
         there_and_back = there_and_back.max(f64::from(got[4]));
         let hidden: f64 = points.iter().filter(|(p, _)| p < z).map(|(_, w)| w).sum();
         too_dark.see(f64::from(got[5]) - hidden, || format!("{points:?} at {z}: {got:?}, there is {hidden}"));
@@ -342,11 +334,9 @@ fn the_series_in_the_shader_is_that_of_the_host() {
         let warp = uniform(gpu, "warp", &DepthWarp { terms, ..Default::default() });
         let depths = buffer_of(gpu, "depths", bytemuck::cast_slice(&input), wgpu::BufferUsages::STORAGE);
         let series = storage_buffer(gpu, "series", 2048 * 4);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let set = bindings! { warp: &warp, depths: &depths, series: &series };
-        Recorder::new(gpu, &mut encoder).compute("series", &look, set, Work::Threads([2048, 1, 1]));
-        gpu.queue.submit([encoder.finish()]);
-        let got: Vec<f32> = bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, &series)).expect("reads"));
+        submit(|recorder| recorder.compute("series", &look, &[set], Work::Threads([2048, 1, 1])));
+        let got = floats(&series);
         let mut worst = Worst::default();
         for (got, v) in got.iter().zip(&input) {
             let exact = fourier::comparison(terms, f64::from(v[0]) - f64::from(v[1]));

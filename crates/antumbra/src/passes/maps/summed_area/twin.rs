@@ -1,16 +1,15 @@
 //! `passes/summed_area` and `shaders/summed_area.wesl`: means over boxes of a large map against double precision.
 
+use super::{SummedArea, Sums, TableShape};
 use crate::bindings;
-use crate::gpu::recorder::Recorder;
+use crate::gpu::readback::read_buffer;
 use crate::gpu::recorder::Work;
-use crate::gpu::resources::{buffer_of, read_buffer, storage_buffer, uniform};
-use crate::gpu::shader::{HostStruct, ShaderKey};
-use crate::input::frame::FrameUniform;
+use crate::gpu::resources::{buffer_of, storage_buffer};
+use crate::gpu::shader::ShaderKey;
 use crate::passes::maps::light_depth::LightDepth;
 use crate::passes::maps::moments::{DepthWarp, Nearest};
-use crate::passes::maps::summed_area::{SummedArea, Sums, TableShape};
 use crate::scene::SceneRenderer;
-use crate::testing::{Random, gpu};
+use crate::testing::{Random, gpu, submit};
 use antumbra_scene::builtin;
 use pollster::block_on;
 
@@ -67,9 +66,7 @@ impl Depths {
 fn errors(size: u32, sums: &[Sums]) -> Vec<[f64; 2]> {
     let gpu = gpu();
     let renderer = SceneRenderer::new(gpu, &builtin::build("fence").expect("known"), [64, 48]).expect("uploads");
-    let depth = LightDepth::new(gpu, size, 1, &renderer.frame.casters).expect("fits");
     let warp = DepthWarp::default().over(&renderer.frame, Nearest::Receiver);
-    let warp_buffer = uniform(gpu, "warp", &warp);
     let mut random = Random(23);
     let boxes: Vec<f32> = (0..BOXES)
         .flat_map(|i| {
@@ -80,30 +77,29 @@ fn errors(size: u32, sums: &[Sums]) -> Vec<[f64; 2]> {
         })
         .collect();
     let input = buffer_of(gpu, "boxes", bytemuck::cast_slice(&boxes), wgpu::BufferUsages::STORAGE);
-    let kernel = format!(
-        "import package::shaders::summed_area::box_mean;
+    let kernel = "
+        import package::shaders::summed_area::box_mean;
         var<storage, read> boxes: array<vec4<f32>>;
         var<storage, read_write> mean: array<f32>;
-        @compute @workgroup_size(64) fn look(@builtin(global_invocation_id) id: vec3<u32>) {{
+        @compute @workgroup_size(64) fn look(@builtin(global_invocation_id) id: vec3<u32>) {
             mean[id.x] = box_mean(boxes[id.x].xy, boxes[id.x].zw, 0u).x;
-        }}\n{}{}",
-        FrameUniform::wgsl(),
-        DepthWarp::wgsl()
-    );
+        }";
     let mut exact = None;
     let each = |sums: &Sums| {
-        let table = SummedArea::new(gpu, TableShape { size, layers: 1, sums: *sums }).expect("fits");
-        let key =
-            ShaderKey { structs: kernel.clone(), ..ShaderKey::new("host") }.feature("fixed", *sums == Sums::Fixed);
+        let key = ShaderKey::of_source(kernel).feature("fixed", *sums == Sums::Fixed);
         let look = gpu.compute_pipeline(&key, "look").unwrap_or_else(|e| panic!("{e}"));
         let output = storage_buffer(gpu, "means", u64::from(BOXES) * 4);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let mut recorder = Recorder::new(gpu, &mut encoder);
-        depth.record(&mut recorder, &renderer.frame).expect("draws");
-        table.record(&mut recorder, &depth, "techniques::moments::vsm::warp", &warp_buffer).expect("records");
-        let set = bindings! { boxes: &input, mean: &output, summed_table: &table.texture, table_means: &table.means };
-        recorder.compute("look", &look, set, Work::Threads([BOXES, 1, 1]));
-        gpu.queue.submit([encoder.finish()]);
+        let mut drawn = None;
+        submit(|recorder| {
+            let depth = LightDepth::record(recorder, &renderer.frame, size, 1)?;
+            let warp = recorder.uniform("warp", &warp);
+            let shape = TableShape { size, layers: 1, sums: *sums };
+            let table = SummedArea::record(recorder, shape, &depth, "techniques::moments::vsm::warp", &warp)?;
+            drawn = Some(depth);
+            let own = bindings! { boxes: &input, mean: &output, summed_table: &table.texture, table_means: &table.means };
+            recorder.compute("look", &look, &[own], Work::Threads([BOXES, 1, 1]))
+        });
+        let depth = drawn.expect("recorded");
         let got: Vec<f32> = bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, &output)).expect("reads"));
         let exact = exact.get_or_insert_with(|| Depths::new(size as usize, &depth, &warp));
         let mut worst = [0f64; 2];

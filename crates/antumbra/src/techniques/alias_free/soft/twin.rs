@@ -1,9 +1,6 @@
 //! `shaders/light_lattice.wesl`: which points of the light a triangle hides.
 
 use crate::testing::{Random, evaluate};
-use crate::input::frame::FrameUniform;
-use crate::gpu::host_struct::HostStruct;
-use crate::techniques::alias_free::soft::LatticeUniform;
 use crate::techniques::alias_free::soft::lattice::Lattice;
 use glam::{DMat2, DVec2, DVec3, Vec2, Vec3};
 
@@ -67,9 +64,8 @@ impl Points {
 
     /// A word a row, of the points that there are.
     fn on_gpu(&self, cases: &[Case]) -> Vec<Vec<u32>> {
-        let text = format!("{KERNEL}\n{}{}", FrameUniform::wgsl(), LatticeUniform::wgsl());
         let input: Vec<f32> = cases.iter().flat_map(|c| self.words(c)).collect();
-        let all = evaluate(&text, &input, 20, 2 * ROWS);
+        let all = evaluate(KERNEL, &input, 20, 2 * ROWS);
         let word = |halves: &[f32], row: usize| halves[0] as u32 | (halves[1] as u32) << 16 & self.rows_mask(row);
         all.iter()
             .map(|o| o.chunks(2).enumerate().map(|(row, h)| word(h, row) & self.rows_mask(row)).collect())

@@ -4,6 +4,7 @@
 mod refinement;
 mod twin;
 
+use super::state::Shape;
 use super::*;
 use crate::techniques::light_sampling::uniform::Weights;
 use crate::testing::gpu;
@@ -77,7 +78,7 @@ proptest! {
         prop_assert_eq!(outcome.drawn, outcome.count);
         let mut twin = refinement.twin();
         let place: BTreeMap<Cell, usize> = twin.all_cells().into_iter().zip(0..).collect();
-        let capacity = refinement.state().capacity as usize;
+        let capacity = refinement.plan().capacity as usize;
         twin.refine(|c| trial.measure(0, place[&c]), trial.threshold(), capacity);
         prop_assert_eq!(&outcome.split, &twin.split);
         prop_assert_eq!(&samples, &twin.samples);
@@ -145,7 +146,7 @@ fn every_layer_is_drawn_by_one_stage_whatever_the_layers_a_pass_can_draw() {
             let mut gpu = gpu().clone();
             gpu.capabilities.layers_per_pass = layers_per_pass;
             let refinement = Refinement::on(&gpu, Trial { size, settings, limit: 1, seed: 0 });
-            let state = refinement.state();
+            let state = refinement.plan();
             for (level, rest) in (0..=state.shape.depth).flat_map(|level| [(level, false), (level, true)]) {
                 let what = format!("{evaluation:?}, {layers_per_pass} a pass, {maps} maps, level {level}, {rest}");
                 let drawn: Vec<usize> = state.chunks(level, rest).flat_map(|c| slots_of(&c.stage)).collect();

@@ -4,14 +4,17 @@ use super::twin::{Cell, Tree};
 use super::{Trial, gpu};
 use crate::bindings;
 use crate::gpu::device::Gpu;
-use crate::gpu::pipeline::{Binding, ComputePipeline};
+use crate::gpu::pipeline::ComputePipeline;
+use crate::gpu::readback::read_buffer;
 use crate::gpu::recorder::{Recorder, Work};
-use crate::gpu::resources::read_buffer;
+use crate::gpu::resources::Resources;
+use crate::passes::maps::light_maps::MapStage;
 use crate::scene::SceneRenderer;
 use crate::technique::TechniqueFactory;
-use crate::techniques::light_sampling::adaptive::state::State;
-use crate::techniques::light_sampling::adaptive::{AdaptiveSampling, MapStage};
+use crate::techniques::light_sampling::adaptive::AdaptiveSampling;
+use crate::techniques::light_sampling::adaptive::state::{self, TreePlan};
 use crate::techniques::light_sampling::uniform::Weights;
+use crate::testing::submit;
 use glam::{DVec2, Vec2};
 use pollster::block_on;
 use std::collections::{BTreeMap, BTreeSet};
@@ -21,11 +24,12 @@ use std::ops::RangeInclusive;
 pub struct Refinement {
     pub trial: Trial,
     technique: AdaptiveSampling,
-    /// What the layers would hold.
+    tree: state::Tree,
+    /// The map in each layer.
     pub held: BTreeMap<usize, u32>,
 }
 
-/// What the GPU has made of a frame.
+/// The result of a frame on the GPU.
 pub struct Outcome {
     /// Number of samples, and of maps drawn.
     pub count: u32,
@@ -58,42 +62,30 @@ impl Refinement {
         scene.light.size = trial.size;
         let renderer = SceneRenderer::new(gpu, &scene, [8, 8]).unwrap_or_else(|e| panic!("{e}"));
         let mut technique = AdaptiveSampling::make(gpu, trial.settings.clone()).unwrap_or_else(|e| panic!("{e}"));
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let prepared = technique.prepare(&renderer.frame, &mut Recorder::new(gpu, &mut encoder));
-        prepared.unwrap_or_else(|e| panic!("{e}"));
-        Refinement { trial, technique, held: BTreeMap::new() }
+        let (mut encoder, mut resources) = (gpu.device.create_command_encoder(&Default::default()), Resources::default());
+        let prepared = technique.prepare(&renderer.frame, &mut Recorder::new(gpu, &mut encoder, &mut resources));
+        let tree = prepared.unwrap_or_else(|e| panic!("{e}")).tree;
+        Refinement { trial, technique, tree, held: BTreeMap::new() }
     }
 
-    pub fn state(&self) -> &State {
-        self.technique.state.as_ref().expect("prepared")
+    pub fn plan(&self) -> &TreePlan {
+        self.technique.plan.as_ref().expect("prepared")
     }
 
     pub fn twin(&self) -> Tree {
-        Tree::new(self.state().shape.axes, self.state().shape.depth)
+        Tree::new(self.plan().shape.axes, self.plan().shape.depth)
     }
 
-    /// Runs one workgroup of each shader: the plan that it is given, and nothing else but the tree.
+    /// Runs one workgroup of each shader with its round, on the tree alone.
     fn run(&self, steps: &[(&ComputePipeline, u32)]) {
-        let s = self.state();
-        let mut encoder = gpu().device.create_command_encoder(&Default::default());
-        let mut recorder = Recorder::new(gpu(), &mut encoder);
-        for (pipeline, plan) in steps {
-            let step = s.plans.at(*plan);
-            let set: &[Binding] = bindings! {
-                adaptive: &s.uniform,
-                tree: &s.tree,
-                cells: &s.cells,
-                grid: &s.grid,
-                layer_of: &s.layer_of,
-                slots: &s.slots,
-                active_cells: &s.active_cells,
-                fresh_layers: &s.fresh_layers,
-                entry_list: &s.entries,
-                plan_step: &step,
-            };
-            recorder.compute("refinement", pipeline, set, Work::Groups([1, 1, 1]));
-        }
-        gpu().queue.submit([encoder.finish()]);
+        submit(|recorder| {
+            steps.iter().try_for_each(|(pipeline, round)| {
+                let step = self.tree.rounds.at(*round);
+                let own = bindings! { entry_list: &self.tree.entries, plan_step: &step };
+                let set = [&self.tree.bindings()[..], own];
+                recorder.compute("refinement", pipeline, &set, Work::Groups([1, 1, 1]))
+            })
+        });
     }
 
     fn words(&self, buffer: &wgpu::Buffer) -> Vec<u32> {
@@ -103,22 +95,22 @@ impl Refinement {
     /// Builds the tree anew from the measures of a frame; maps rest or not.
     pub fn refine(&mut self, frame: usize, rest: bool) -> Outcome {
         let (plan, weigh) = (&self.technique.pipelines.plan, &self.technique.pipelines.weigh);
-        self.run(&[(plan, State::plan(0, rest, true))]);
-        let count = self.state().cells.size() as usize / 12;
+        self.run(&[(plan, TreePlan::round(0, rest, true))]);
+        let count = self.tree.cells.size() as usize / 12;
         let cells: Vec<u32> = (0..count).flat_map(|k| [0, self.trial.bits(self.trial.measure(frame, k)), 0]).collect();
-        gpu().queue.write_buffer(&self.state().cells, 0, bytemuck::cast_slice(&cells));
-        let levels = 1..=self.state().shape.depth;
+        gpu().queue.write_buffer(&self.tree.cells, 0, bytemuck::cast_slice(&cells));
+        let levels = 1..=self.plan().shape.depth;
         let mut steps: Vec<(&ComputePipeline, u32)> =
-            levels.map(|level| (&**plan, State::plan(level, rest, true))).collect();
-        steps.push((weigh, State::plan(0, false, true)));
+            levels.map(|level| (&**plan, TreePlan::round(level, rest, true))).collect();
+        steps.push((weigh, TreePlan::round(0, false, true)));
         self.run(&steps);
         let outcome = self.outcome();
-        self.draw(&outcome, 0..=self.state().shape.depth, rest);
+        self.draw(&outcome, 0..=self.plan().shape.depth, rest);
         outcome
     }
 
     fn outcome(&self) -> Outcome {
-        let s = self.state();
+        let s = &self.tree;
         let tree = self.words(&s.tree);
         let cells = self.words(&s.cells);
         let list = self.words(&s.entries);
@@ -148,7 +140,7 @@ impl Refinement {
     fn draw(&mut self, outcome: &Outcome, levels: RangeInclusive<u32>, rest: bool) {
         let mut drawn = 0;
         for level in levels {
-            let ranges: Vec<_> = self.state().chunks(level, rest).map(|c| slots_of(&c.stage)).collect();
+            let ranges: Vec<_> = self.plan().chunks(level, rest).map(|c| slots_of(&c.stage)).collect();
             for slot in ranges.into_iter().flatten().filter(|s| *s < outcome.slots.len()) {
                 if outcome.slots[slot][1] == level {
                     self.held.insert(slot, outcome.slots[slot][0]);
@@ -161,13 +153,13 @@ impl Refinement {
 
     /// Carries the tree over from frame to frame; `measure` is what the frame before has found.
     pub fn carry_over(&mut self, measure: impl Fn(usize) -> f32, rest: bool) -> Outcome {
-        let mut cells = self.words(&self.state().cells);
+        let mut cells = self.words(&self.tree.cells);
         for (k, words) in cells.chunks_exact_mut(3).enumerate() {
             words[1] = self.trial.bits(measure(k));
         }
-        gpu().queue.write_buffer(&self.state().cells, 0, bytemuck::cast_slice(&cells));
+        gpu().queue.write_buffer(&self.tree.cells, 0, bytemuck::cast_slice(&cells));
         let (steady, weigh) = (&self.technique.pipelines.steady, &self.technique.pipelines.weigh);
-        self.run(&[(steady, State::plan(0, rest, false)), (weigh, State::plan(0, false, false))]);
+        self.run(&[(steady, TreePlan::round(0, rest, false)), (weigh, TreePlan::round(0, false, false))]);
         let outcome = self.outcome();
         self.draw(&outcome, 0..=0, true);
         outcome
@@ -175,7 +167,7 @@ impl Refinement {
 
     /// The tree whose cells are split like this.
     pub fn tree_of(&self, outcome: &Outcome) -> Tree {
-        Tree::of_splits(self.state().shape.axes, self.state().shape.depth, outcome.split.clone())
+        Tree::of_splits(self.plan().shape.axes, self.plan().shape.depth, outcome.split.clone())
     }
 
     /// What holds for every tree. Returns the samples that have a layer.
