@@ -41,6 +41,15 @@ pub enum Work<'a> {
     Indirect(&'a wgpu::Buffer, u64),
 }
 
+impl Work<'_> {
+    /// At least this many workgroups, in two dimensions: one dimension holds 65 535. The workgroup (x, y) has the index
+    /// `x + y * num_workgroups.x`.
+    pub fn groups(count: u32) -> Self {
+        let width = count.clamp(1, 1 << 15);
+        Work::Groups([width, count.div_ceil(width), 1])
+    }
+}
+
 impl<'a> Recorder<'a> {
     /// Begins a frame of `resources`; it ends when the recorder is dropped.
     pub fn new(gpu: &'a Gpu, encoder: &'a mut wgpu::CommandEncoder, resources: &'a mut Resources) -> Self {

@@ -29,7 +29,8 @@ pub struct BufferDescription {
 }
 
 impl BufferDescription {
-    /// A storage buffer of at least `size` bytes, zero when it is made. It can hold indirect arguments and be copied.
+    /// A storage buffer of at least `size` bytes, zero when it is made. It can hold indirect arguments and uniforms, and be
+    /// copied.
     pub fn new(size: u64) -> Self {
         BufferDescription { size: size.max(16), cleared: 0, debug: None }
     }
@@ -366,12 +367,13 @@ pub fn buffer_of(gpu: &Gpu, label: &str, bytes: &[u8], usage: wgpu::BufferUsages
     gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor { label: Some(label), contents: bytes, usage })
 }
 
-/// A zeroed storage buffer of at least `size` bytes that can hold indirect arguments and be copied.
+/// A zeroed storage buffer of at least `size` bytes that can hold indirect arguments and uniforms, and be copied.
 pub fn storage_buffer(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
         size: size.max(16),
         usage: wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::UNIFORM
             | wgpu::BufferUsages::INDIRECT
             | wgpu::BufferUsages::COPY_DST
             | wgpu::BufferUsages::COPY_SRC,
