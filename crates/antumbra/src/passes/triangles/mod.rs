@@ -2,6 +2,6 @@
 
 // TODO(convert) pub mod adjacency;
 pub mod culling;
-// TODO(convert) pub mod light_triangles;
+pub mod light_triangles;
 // TODO(convert) pub mod silhouette;
 // TODO(convert) pub mod triangle_pairs;
