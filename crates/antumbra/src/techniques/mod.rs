@@ -35,6 +35,6 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),
     entry::<light_sampling::uniform::UniformSampling>(),
     entry::<light_sampling::adaptive::AdaptiveSampling>(),
-    // TODO(convert) entry::<alias_free::hard::AliasFree>(),
+    entry::<alias_free::hard::AliasFree>(),
     entry::<alias_free::soft::AliasFreeSoft>(),
 ];
