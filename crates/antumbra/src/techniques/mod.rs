@@ -30,7 +30,6 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<backprojection::Backprojection>(),
     entry::<backprojection::packet::Packet>(),
     entry::<pvssm::Pvssm>(),
-    // TODO(convert) entry::<pvssm::fvsm::Fvsm>(),
     entry::<pvssm::Fvsm>(),
     // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),
     entry::<light_sampling::uniform::UniformSampling>(),
