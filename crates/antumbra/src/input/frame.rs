@@ -179,8 +179,24 @@ impl Frame {
     /// The same frame with a point at the light's centre, for techniques of hard shadows that share the code of soft
     /// ones.
     pub(crate) fn with_point_light(&self, recorder: &mut Recorder) -> Frame {
-        let mut point = Frame {
-            light: RectLight { size: Vec2::ZERO, ..self.light },
+        self.changed(recorder, |frame| frame.light.size = Vec2::ZERO)
+    }
+
+    /// The same frame seen by another view, with its depth and normals.
+    pub(crate) fn with_view(
+        &self,
+        recorder: &mut Recorder,
+        view: View,
+        [depth, normals]: [&wgpu::TextureView; 2],
+    ) -> Frame {
+        self.changed(recorder, |frame| {
+            (frame.view, frame.depth, frame.normals) = (view, depth.clone(), normals.clone());
+        })
+    }
+
+    /// A copy with a uniform of its own.
+    fn changed(&self, recorder: &mut Recorder, change: impl FnOnce(&mut Frame)) -> Frame {
+        let mut frame = Frame {
             casters: self.casters.clone(),
             depth: self.depth.clone(),
             normals: self.normals.clone(),
@@ -188,8 +204,9 @@ impl Frame {
             uniform: self.uniform.clone(),
             ..*self
         };
-        point.uniform = recorder.uniform("frame of a point light", &point.uniform_value());
-        point
+        change(&mut frame);
+        frame.uniform = recorder.uniform("changed frame", &frame.uniform_value());
+        frame
     }
 
     /// The resources of `shaders/frame.wesl`.

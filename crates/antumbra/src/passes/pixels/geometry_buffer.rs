@@ -41,31 +41,40 @@ impl GeometryBuffer {
     /// Textures of an image's size.
     pub fn new(gpu: &Gpu, size: [u32; 2]) -> Result<GeometryBuffer, Error> {
         gpu.check_size("image", size[0], size[1])?;
-        let texture = |label, format| {
+        Ok(GeometryBuffer::of(size, |label, description| Texture::new(gpu, label, description)))
+    }
+
+    /// Textures from the recorder's pool.
+    pub(crate) fn pooled(recorder: &mut Recorder, size: [u32; 2]) -> GeometryBuffer {
+        GeometryBuffer::of(size, |label, description| recorder.texture(label, description))
+    }
+
+    fn of(size: [u32; 2], mut make: impl FnMut(&'static str, TextureDescription) -> Texture) -> GeometryBuffer {
+        let mut texture = |label, format| {
             let target = TextureDescription::new(size, format, label).usage(wgpu::TextureUsages::RENDER_ATTACHMENT);
-            Texture::new(gpu, label, target)
+            make(label, target)
         };
-        Ok(GeometryBuffer {
+        GeometryBuffer {
             depth: texture("depth", wgpu::TextureFormat::Depth32Float),
             normal: texture("normal", wgpu::TextureFormat::Rgba32Float),
             color: texture("base colour", wgpu::TextureFormat::Rgba16Float),
-        })
+        }
     }
 
     /// Draws everything, receivers and casters, in a fixed order: of coplanar surfaces the same one wins every time.
     pub fn record(&self, recorder: &mut Recorder, casters: &Casters, view: &View) -> Result<(), Error> {
-        let view = recorder.uniform("view", &ViewUniform::of(view));
-        self.draw(recorder, "geometry buffer", casters, &view)
+        self.record_as(recorder, "geometry buffer", casters, view)
     }
 
-    /// The same by a view that is on the GPU.
-    pub(crate) fn draw(
+    /// The same under another label.
+    pub(crate) fn record_as(
         &self,
         recorder: &mut Recorder,
         label: &'static str,
         casters: &Casters,
-        view: &wgpu::Buffer,
+        view: &View,
     ) -> Result<(), Error> {
+        let view = recorder.uniform("view", &ViewUniform::of(view));
         let target = RenderTarget {
             colors: vec![self.normal.texture.format(), self.color.texture.format()],
             depth: Some(wgpu::CompareFunction::Greater),
@@ -78,7 +87,7 @@ impl GeometryBuffer {
         recorder.render(label, &colors, depth_target(&self.depth.view, Some(0.0)), 1, |draw| {
             for batch in casters.batches.iter().filter(|b| b.cluster_count > 0) {
                 let pipeline = if batch.textured { &textured } else { &plain };
-                draw.bind(pipeline, &[bindings! { picture_view: view }, &batch.bindings(casters)])?;
+                draw.bind(pipeline, &[bindings! { picture_view: &view }, &batch.bindings(casters)])?;
                 draw.pass.draw(0..3 * CLUSTER_TRIANGLES, 0..batch.cluster_count);
             }
             Ok(())
