@@ -1,13 +1,13 @@
-//! Keeps some elements of a list whose length only the GPU knows.
+//! Stream compaction: keeps some elements of a list whose length only the GPU knows.
 
-use crate::passes::lists::scan::{ListLength, Scan};
+use crate::bindings;
+use crate::error::Error;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::ShaderKey;
-use crate::error::Error;
-use crate::gpu::device::Gpu;
-use crate::bindings;
+use crate::passes::lists::list_length::ListLength;
+use crate::passes::lists::scan::Scan;
 
-/// What a list is made of.
+/// The type of a list's elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Element {
     /// `u32`.
@@ -16,51 +16,35 @@ pub enum Element {
     Pair,
 }
 
-/// Moves what is kept to the front of another list, in its order.
-pub struct Compact {
-    scan: Scan,
-}
-
-/// A list and where it is moved to.
+/// A list and its compaction.
 pub struct Compaction<'a> {
-    /// What it is made of.
+    /// Type of its elements.
     pub element: Element,
     /// The list.
     pub elements: &'a wgpu::Buffer,
     /// Its length.
     pub length: &'a ListLength,
-    /// For each element 1 if it is kept, else 0 (`u32`). Overwritten by the places of what is kept.
+    /// For each element 1 if it is kept, else 0 (`u32`). Overwritten by the offsets of the kept elements.
     pub flags: &'a wgpu::Buffer,
-    /// Where what is kept goes: another buffer, as large as can be needed.
+    /// Receives the kept elements in their order: another buffer, large enough for all of them.
     pub compacted: &'a wgpu::Buffer,
-    /// Its length.
-    pub kept: &'a ListLength,
 }
 
-impl Compact {
-    /// For lists of at most `capacity` elements.
-    pub fn new(gpu: &Gpu, capacity: u32) -> Compact {
-        Compact { scan: Scan::new(gpu, capacity) }
-    }
-
-    /// Compacts a list.
-    pub fn record(&self, recorder: &mut Recorder, label: &str, list: &Compaction) -> Result<(), Error> {
-        self.scan.record(recorder, label, list.length, list.flags, list.kept)?;
-        let key = ShaderKey::new("passes::lists::compact").feature("pairs", list.element == Element::Pair);
+impl Compaction<'_> {
+    /// Copies the kept elements; returns their number.
+    pub fn record(&self, recorder: &mut Recorder, label: &'static str) -> Result<ListLength, Error> {
+        let scan = Scan::new(recorder, (self.flags.size() / 4) as u32);
+        scan.record(recorder, label, self.length, self.flags)?;
+        let key = ShaderKey::new("passes::lists::compact").feature("pairs", self.element == Element::Pair);
         let compact = recorder.gpu.compute_pipeline(&key, "compact")?;
         let set = bindings! {
-            length: &list.length.0,
-            places: list.flags,
-            kept: &list.kept.0,
-            elements: list.elements,
-            compacted: list.compacted,
+            length: &self.length.0,
+            offsets: self.flags,
+            kept: &scan.total.0,
+            elements: self.elements,
+            compacted: self.compacted,
         };
-        recorder.compute(label, &compact, set, list.length.work());
-        Ok(())
-    }
-
-    /// GPU memory, in bytes.
-    pub fn bytes(&self) -> u64 {
-        self.scan.bytes()
+        recorder.compute(label, &compact, &[set], self.length.work())?;
+        Ok(scan.total)
     }
 }

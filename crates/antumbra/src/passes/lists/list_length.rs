@@ -9,8 +9,13 @@ use crate::gpu::resources::BufferDescription;
 pub struct ListLength(pub wgpu::Buffer);
 
 impl ListLength {
-    /// The length of an empty list at the start of each frame, which a pass writes.
+    /// A length that a pass writes.
     pub fn new(recorder: &mut Recorder, label: &'static str) -> ListLength {
+        ListLength(recorder.buffer(label, BufferDescription::new(16)))
+    }
+
+    /// A length that passes count up: 0 at the start of each frame.
+    pub fn counted(recorder: &mut Recorder, label: &'static str) -> ListLength {
         ListLength(recorder.buffer(label, BufferDescription::new(16).cleared()))
     }
 

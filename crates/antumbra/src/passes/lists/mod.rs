@@ -1,7 +1,7 @@
 //! Lists whose length only the GPU knows: prefix sums, sorting, compaction, receivers of each texel.
 
-// TODO(convert) pub mod compact;
+pub mod compact;
 pub mod list_length;
-// TODO(convert) pub mod scan;
-// TODO(convert) pub mod sort;
-// TODO(convert) pub mod texel_lists;
+pub mod scan;
+pub mod sort;
+pub mod texel_lists;

@@ -1,110 +1,91 @@
-//! Sorting on the GPU by 32-bit keys: a radix sort of four bits at a time, whose lists' length only the GPU knows.
+//! Sorting by 32-bit keys: a radix sort of four bits at a time, of lists whose length only the GPU knows.
 
-use crate::passes::lists::scan::{ListLength, Scan, runs_of};
-use crate::gpu::recorder::{Recorder, Work};
-use crate::gpu::resources::{UniformArray, storage_buffer};
-use crate::gpu::shader::ShaderKey;
 use crate::error::Error;
-use crate::gpu::device::Gpu;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::{BufferDescription, UniformArray};
+use crate::gpu::shader::ShaderKey;
+use crate::passes::lists::list_length::ListLength;
+use crate::passes::lists::scan::{Scan, runs_of};
 use crate::{bindings, gpu_struct};
 
 gpu_struct! {
-    /// Which bits of the keys are looked at.
+    /// The digit that a pass sorts by.
     pub(crate) struct SortUniform {
+        /// Its lowest bit.
         shift: u32,
     }
 }
 
-/// Bits of a digit, and the values that it may take.
+/// Bits of a digit, and the number of its values.
 const DIGIT_BITS: u32 = 4;
 const DIGITS: u32 = 1 << DIGIT_BITS;
 
-/// Keys and what belongs to them, each `u32`.
+/// Keys and their values, each `u32`.
 pub struct Keyed {
-    /// What is sorted by.
+    /// Sort keys.
     pub keys: wgpu::Buffer,
-    /// What goes with each key.
+    /// The value of each key.
     pub values: wgpu::Buffer,
 }
 
-impl Keyed {
-    fn new(gpu: &Gpu, capacity: u32) -> Keyed {
-        let buffer = |label| storage_buffer(gpu, label, u64::from(capacity) * 4);
-        Keyed { keys: buffer("keys"), values: buffer("values") }
-    }
-
-    fn bytes(&self) -> u64 {
-        self.keys.size() + self.values.size()
-    }
-}
-
-/// Sorts keys with their values, the smallest key first; equal keys keep their order.
+/// Sorts keys with their values, the smallest key first; the order of equal keys is kept.
 pub struct Sort {
-    lists: [Keyed; 2],
-    places: wgpu::Buffer,
-    place_count: ListLength,
-    moved: ListLength,
+    /// The input of [`Sort::record`], then its intermediate results.
+    pub input: Keyed,
+    other: Keyed,
+    offsets: wgpu::Buffer,
+    offset_count: ListLength,
     scan: Scan,
-    digits: UniformArray<SortUniform>,
+    digits: UniformArray,
     runs: u32,
 }
 
 impl Sort {
     /// For lists of at most `capacity` elements.
-    pub fn new(gpu: &Gpu, capacity: u32) -> Sort {
+    pub fn new(recorder: &mut Recorder, capacity: u32) -> Sort {
         let runs = runs_of(capacity);
-        let digits: Vec<_> = (0..32 / DIGIT_BITS).map(|i| SortUniform { shift: i * DIGIT_BITS }).collect();
+        let mut buffer = |label, words: u32| recorder.buffer(label, BufferDescription::new(u64::from(words) * 4));
+        let mut keyed = || Keyed { keys: buffer("keys", capacity), values: buffer("values", capacity) };
         Sort {
-            lists: [Keyed::new(gpu, capacity), Keyed::new(gpu, capacity)],
-            places: storage_buffer(gpu, "places of digits", u64::from(runs * DIGITS) * 4),
-            place_count: ListLength::known(gpu, "number of places", runs * DIGITS),
-            moved: ListLength::unknown(gpu, "moved elements"),
-            scan: Scan::new(gpu, runs * DIGITS),
-            digits: UniformArray::new(gpu, "digits", &digits),
+            input: keyed(),
+            other: keyed(),
+            offsets: buffer("offsets of digits", runs * DIGITS),
+            offset_count: ListLength::known(recorder, "number of offsets", runs * DIGITS),
+            scan: Scan::new(recorder, runs * DIGITS),
+            digits: recorder
+                .uniforms("digits", (0..32).step_by(DIGIT_BITS as usize).map(|shift| SortUniform { shift })),
             runs,
         }
     }
 
-    /// What is to be sorted is written here before [`Sort::record`].
-    pub fn input(&self) -> &Keyed {
-        &self.lists[0]
-    }
-
-    /// Sorts the first `length` elements by the lowest `bits` of their keys, all others being 0, and returns where the
-    /// result lies.
+    /// Sorts the first `length` elements by the lowest `bits` of their keys, all others being 0; returns the result.
     pub fn record(
         &self,
         recorder: &mut Recorder,
-        label: &str,
+        label: &'static str,
         length: &ListLength,
         bits: u32,
     ) -> Result<&Keyed, Error> {
         let key = ShaderKey::new("passes::lists::sort::sort");
         let count = recorder.gpu.compute_pipeline(&key, "count_digits")?;
         let move_elements = recorder.gpu.compute_pipeline(&key, "move_elements")?;
-        let passes = bits.min(32).div_ceil(DIGIT_BITS);
-        for i in 0..passes {
-            let (source, target) = (&self.lists[i as usize % 2], &self.lists[(i as usize + 1) % 2]);
+        let (mut source, mut target) = (&self.input, &self.other);
+        for i in 0..bits.min(32).div_ceil(DIGIT_BITS) {
             let digit = self.digits.at(i);
             let set = bindings! {
                 length: &length.0,
                 digit: &digit,
                 keys: &source.keys,
                 payload: &source.values,
-                places: &self.places,
+                offsets: &self.offsets,
                 sorted_keys: &target.keys,
                 sorted_payload: &target.values,
             };
-            recorder.compute(label, &count, set, Work::Groups([self.runs, 1, 1]));
-            self.scan.record(recorder, label, &self.place_count, &self.places, &self.moved)?;
-            recorder.compute(label, &move_elements, set, Work::Groups([self.runs, 1, 1]));
+            recorder.compute(label, &count, &[set], Work::Groups([self.runs, 1, 1]))?;
+            self.scan.record(recorder, label, &self.offset_count, &self.offsets)?;
+            recorder.compute(label, &move_elements, &[set], Work::Groups([self.runs, 1, 1]))?;
+            (source, target) = (target, source);
         }
-        Ok(&self.lists[passes as usize % 2])
-    }
-
-    /// GPU memory, in bytes.
-    pub fn bytes(&self) -> u64 {
-        let lists: u64 = self.lists.iter().map(Keyed::bytes).sum();
-        lists + self.places.size() + self.scan.bytes()
+        Ok(source)
     }
 }
