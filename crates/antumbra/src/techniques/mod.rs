@@ -2,7 +2,7 @@
 
 use crate::technique::{TechniqueInfo, entry};
 
-// TODO(convert) pub mod alias_free;
+pub mod alias_free;
 // TODO(convert) pub mod backprojection;
 // TODO(convert) pub mod light_sampling;
 // TODO(convert) pub mod moments;
@@ -34,6 +34,6 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),
     // TODO(convert) entry::<light_sampling::uniform::UniformSampling>(),
     // TODO(convert) entry::<light_sampling::adaptive::AdaptiveSampling>(),
-    // TODO(convert) entry::<alias_free::hard::AliasFree>(),
+    entry::<alias_free::hard::AliasFree>(),
     // TODO(convert) entry::<alias_free::soft::AliasFreeSoft>(),
 ];

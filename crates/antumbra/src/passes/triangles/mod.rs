@@ -4,4 +4,4 @@
 pub mod culling;
 pub mod light_triangles;
 // TODO(convert) pub mod silhouette;
-// TODO(convert) pub mod triangle_pairs;
+pub mod triangle_pairs;

@@ -1,5 +1,5 @@
 //! Exact visibility at the pixel's own points, from lists of receivers and the triangles themselves.
 
 pub mod hard;
-pub mod soft;
-pub mod subpixel;
+// TODO(convert) pub mod soft;
+// TODO(convert) pub mod subpixel;

@@ -95,7 +95,7 @@ impl Part {
             cluster_count,
         };
         let uniforms = recorder.uniforms("clusters to gather", self.clusters.iter().map(uniform));
-        let length = ListLength::new(recorder, "number of light triangles");
+        let length = ListLength::counted(recorder, "number of light triangles");
         let own = bindings! { boxes: &frame.casters.cluster_bounds, gathered_length: &length.0 };
         let label = "light triangles";
         for (i, &(batch, _, count)) in self.clusters.iter().enumerate() {
@@ -158,7 +158,7 @@ impl AreaTriangles {
         let key = ShaderKey::new("passes::triangles::light_triangles::gather")
             .feature("clusters", true)
             .feature("masked", part.masked.is_some());
-        let length = ListLength::new(recorder, "number of light clusters");
+        let length = ListLength::counted(recorder, "number of light clusters");
         let output = bindings! {
             gathered_texels: &self.texels,
             gathered_clusters: &self.clusters,
