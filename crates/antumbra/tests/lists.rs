@@ -3,11 +3,14 @@
 
 mod common;
 
-use antumbra::gpu::resource::{read_buffer, storage_buffer};
-use antumbra::passes::lists::compact::{Compact, Compaction, Element};
-use antumbra::passes::lists::scan::{ListLength, Scan};
+use antumbra::Error;
+use antumbra::gpu::readback::read_buffer;
+use antumbra::gpu::recorder::Recorder;
+use antumbra::gpu::resources::{Resources, storage_buffer};
+use antumbra::passes::lists::compact::{Compaction, Element};
+use antumbra::passes::lists::list_length::ListLength;
+use antumbra::passes::lists::scan::Scan;
 use antumbra::passes::lists::sort::Sort;
-use antumbra::{Error, Recorder};
 use common::gpu;
 use pollster::block_on;
 
@@ -49,20 +52,36 @@ fn words_of(buffer: &wgpu::Buffer) -> Vec<u32> {
 
 /// A length that was counted on the GPU, as far as the passes can tell.
 fn counted(count: u32) -> ListLength {
-    let length = ListLength::unknown(gpu(), "length");
-    gpu().queue.write_buffer(&length.0, 0, bytemuck::cast_slice(&words_of(&ListLength::known(gpu(), "", count).0)));
-    length
+    let length = storage_buffer(gpu(), "length", 16);
+    gpu().queue.write_buffer(&length, 0, bytemuck::cast_slice(&ListLength::words(count)));
+    ListLength(length)
 }
 
-fn run(record: impl FnOnce(&mut Recorder) -> Result<(), Error>) {
-    common::submit(record).unwrap_or_else(|e| panic!("{e}"));
+/// Records and submits; returns the handles that were recorded.
+fn run<T>(record: impl FnOnce(&mut Recorder) -> Result<T, Error>) -> T {
+    let (mut resources, mut made) = (Resources::default(), None);
+    let result = common::submit(|encoder| {
+        made = Some(record(&mut Recorder::new(gpu(), encoder, &mut resources))?);
+        Ok(())
+    });
+    result.unwrap_or_else(|e| panic!("{e}"));
+    made.expect("recorded")
+}
+
+/// Scans the first `length` words of a buffer; returns the total.
+fn scanned(buffer: &wgpu::Buffer, length: u32, capacity: u32) -> Vec<u32> {
+    let length = counted(length);
+    let total = run(|recorder| {
+        let scan = Scan::new(recorder, capacity);
+        scan.record(recorder, "scan", &length, buffer)?;
+        Ok(scan.total)
+    });
+    words_of(&total.0)
 }
 
 fn check_scan(values: &[u32], capacity: u32) {
-    let (buffer, total) = (buffer_with(values), ListLength::unknown(gpu(), "total"));
-    let length = counted(values.len() as u32);
-    let scan = Scan::new(gpu(), capacity);
-    run(|recorder| scan.record(recorder, "scan", &length, &buffer, &total));
+    let buffer = buffer_with(values);
+    let total = scanned(&buffer, values.len() as u32, capacity);
     let mut sum = 0u32;
     let mut before = |value: &u32| {
         let next = sum.wrapping_add(*value);
@@ -75,7 +94,7 @@ fn check_scan(values: &[u32], capacity: u32) {
     let n = values.len();
     assert!(wrong.is_none(), "{n} of {capacity}: place {wrong:?} is {:?}", wrong.map(|i| (got[i], expected[i])));
     let groups = sum.div_ceil(64);
-    assert_eq!(words_of(&total.0), [groups.min(1 << 15), groups.div_ceil(1 << 15), 1, sum], "{n} of {capacity}: total");
+    assert_eq!(total, [groups.min(1 << 15), groups.div_ceil(1 << 15), 1, sum], "{n} of {capacity}: total");
 }
 
 #[test]
@@ -97,30 +116,26 @@ fn a_length_beyond_the_buffer_is_cut_off_at_its_end() {
     let values = vec![1u32; 2000];
     let buffer = storage_buffer(gpu(), "words", 8000);
     gpu().queue.write_buffer(&buffer, 0, bytemuck::cast_slice(&values));
-    let (length, total) = (counted(1 << 30), ListLength::unknown(gpu(), "total"));
-    let scan = Scan::new(gpu(), 2000);
-    run(|recorder| scan.record(recorder, "scan", &length, &buffer, &total));
+    let total = scanned(&buffer, 1 << 30, 2000);
     assert_eq!(words_of(&buffer), (0..2000).collect::<Vec<u32>>());
-    assert_eq!(words_of(&total.0)[3], 2000);
+    assert_eq!(total[3], 2000);
 }
 
 fn check_sort(keys: &[u32], bits: u32) {
     let n = keys.len() as u32;
-    let sort = Sort::new(gpu(), n + 500);
     let values: Vec<u32> = (0..n).collect();
-    gpu().queue.write_buffer(&sort.input().keys, 0, bytemuck::cast_slice(keys));
-    gpu().queue.write_buffer(&sort.input().values, 0, bytemuck::cast_slice(&values));
     let length = counted(n);
-    let mut out = None;
-    run(|recorder| {
-        out = Some(sort.record(recorder, "sort", &length, bits)?);
-        Ok(())
+    let [keys_out, values_out] = run(|recorder| {
+        let sort = Sort::new(recorder, n + 500);
+        gpu().queue.write_buffer(&sort.input.keys, 0, bytemuck::cast_slice(keys));
+        gpu().queue.write_buffer(&sort.input.values, 0, bytemuck::cast_slice(&values));
+        let sorted = sort.record(recorder, "sort", &length, bits)?;
+        Ok([sorted.keys.clone(), sorted.values.clone()])
     });
-    let out = out.expect("recorded");
     let mut expected: Vec<(u32, u32)> = keys.iter().copied().zip(values).collect();
     // Stable, as the GPU's has to be.
     expected.sort_by_key(|(key, _)| *key);
-    let got: Vec<(u32, u32)> = words_of(&out.keys).into_iter().zip(words_of(&out.values)).take(n as usize).collect();
+    let got: Vec<(u32, u32)> = words_of(&keys_out).into_iter().zip(words_of(&values_out)).take(n as usize).collect();
     let wrong = (0..n as usize).find(|&i| got[i] != expected[i]);
     assert!(wrong.is_none(), "{n} keys of {bits} bits: place {wrong:?} is {:?}", wrong.map(|i| (got[i], expected[i])));
 }
@@ -142,12 +157,10 @@ fn check_compact(words: &[u32], element: Element, keep: impl Fn(usize) -> bool) 
     let per = if element == Element::Pair { 2 } else { 1 };
     let n = words.len() / per;
     let flags: Vec<u32> = (0..n).map(|i| u32::from(keep(i))).collect();
-    let compact = Compact::new(gpu(), n.max(1) as u32);
     let (elements, flags, compacted) = (buffer_with(words), buffer_with(&flags), buffer_with(words));
-    let (length, kept) = (counted(n as u32), ListLength::unknown(gpu(), "kept"));
-    let list =
-        Compaction { element, elements: &elements, length: &length, flags: &flags, compacted: &compacted, kept: &kept };
-    run(|recorder| compact.record(recorder, "compact", &list));
+    let length = counted(n as u32);
+    let list = Compaction { element, elements: &elements, length: &length, flags: &flags, compacted: &compacted };
+    let kept = run(|recorder| list.record(recorder, "compact"));
     let expected: Vec<u32> = (0..n).filter(|&i| keep(i)).flat_map(|i| words[i * per..(i + 1) * per].to_vec()).collect();
     assert_eq!(words_of(&kept.0)[3] as usize, expected.len() / per, "{n} elements: how many are kept");
     let got = words_of(&compacted);

@@ -84,8 +84,8 @@ pub struct PairShader<'a> {
     /// [`TrianglePairs::key`] with the module's features. The feature `masked` is on where the material has holes; then
     /// the module may use `shaders/triangles.wesl`.
     pub key: ShaderKey,
-    /// Resources of the module.
-    pub bindings: &'a [Binding<'a>],
+    /// Resources of the module, with those of `shaders/frame.wesl` if it uses them.
+    pub bindings: &'a [&'a [Binding<'a>]],
 }
 
 /// The lists of pairs.
@@ -237,12 +237,14 @@ impl TrianglePairs {
         let listed = recorder.gpu.compute_pipeline(&key, "evaluate")?;
         let unlisted = recorder.gpu.compute_pipeline(&key.feature("unlisted", true), "evaluate")?;
         let (frame, lists_of) = (frame.bindings(), lists.bindings());
-        let shared: [&[_]; 4] = [&frame, &lists_of, shader.bindings, batch.as_ref().map_or(&[], |b| &b[..])];
-        let [a, b, c, d] = shared;
+        let mut shared = vec![&lists_of[..]];
+        shared.extend_from_slice(shader.bindings);
+        shared.extend(batch.as_ref().map(|batch| &batch[..]));
         let label = "shadow tests";
-        let triangles = bindings! { triangles: &self.triangles.buffer, order: &sorted.values };
-        recorder.compute(label, &listed, &[a, b, c, d, &pairs, triangles], pair_length.work())?;
+        let own = bindings! { triangles: &self.triangles.buffer, order: &sorted.values };
+        recorder.compute(label, &listed, &[&shared[..], &[&pairs, own]].concat(), pair_length.work())?;
         let map = bindings! { texel_map: &lists.uniform, blocks: &lists.blocks };
-        recorder.compute(label, &unlisted, &[a, b, c, d, &self.candidates(length), map], self.unlisted.work())
+        let own: [&[_]; 3] = [&frame, &self.candidates(length), map];
+        recorder.compute(label, &unlisted, &[&shared[..], &own].concat(), self.unlisted.work())
     }
 }

@@ -87,7 +87,7 @@ impl Technique for AliasFree {
         let own = bindings! { receivers: &receivers, hidden: &hidden };
         let pairs = TrianglePairs::new(recorder, frame, &lists, &self.capacity);
         let key = TrianglePairs::key("techniques::alias_free::hard::pair");
-        let shader = PairShader { key, bindings: own };
+        let shader = PairShader { key, bindings: &[own] };
         let listed = TexelLists::key("techniques::alias_free::hard::listed");
         let geometry = (count > 1).then(|| GeometryBuffer::pooled(recorder, frame.size));
         for index in 0..count {
