@@ -70,7 +70,9 @@ impl Runner<'_> {
         let Experiment { scene, size, specs, .. } = experiment;
         let loaded = self.load(scene, *size)?;
         let frames = if experiment.timed { self.frames } else { 0 };
-        let rendered = self.render_all(experiment, &loaded, frames)?;
+        let task = format!("Measuring {}", experiment.name);
+        let mut rendered = loaded.render_all(&task, &specs.iter().collect::<Vec<_>>(), frames)?;
+        use_one_clock(&mut rendered);
         let settings = (experiment.truth)(&self.truth);
         let truth = Truth::of(scene, *size, &settings, self.monitor)?;
         self.monitor.check()?;
@@ -93,17 +95,6 @@ impl Runner<'_> {
             image: loaded.shaded(&truth.reference.visibility)?,
             runs,
         })
-    }
-
-    fn render_all(&self, of: &Experiment, scene: &LoadedScene, frames: u32) -> Result<Vec<Rendered>, Error> {
-        let progress = self.monitor.task(&format!("Measuring {}", of.name));
-        let render = |(i, spec)| {
-            let show = |done| progress((i as f32 + done) / of.specs.len() as f32);
-            scene.render(spec, frames, show)
-        };
-        let mut rendered: Vec<Rendered> = of.specs.iter().enumerate().map(render).collect::<Result<_, _>>()?;
-        use_one_clock(&mut rendered);
-        Ok(rendered)
     }
 }
 
