@@ -59,7 +59,7 @@ impl Runner<'_> {
         experiments.iter().enumerate().map(trial).collect()
     }
 
-    /// Runs groups of experiments. Returns all trials and the number in each group, for [`split`](super::split).
+    /// Runs groups of experiments. Returns all trials and the number in each group, for [`split`](super::trial::split).
     pub fn run_groups<const N: usize>(&self, groups: [Vec<Experiment>; N]) -> Result<(Vec<Trial>, [usize; N]), Error> {
         let counts = groups.each_ref().map(Vec::len);
         Ok((self.run_all(&groups.into_iter().flatten().collect::<Vec<_>>())?, counts))
