@@ -2,7 +2,7 @@
 //! results become pages, tables and files. The program `antumbra` calls this library; it adds arguments, progress bars
 //! and exit codes.
 //!
-//! Dependencies go one way: `page` and [`table`] format; [`measure`] and [`truth`] produce numbers; [`comparison`] is the
+//! Dependencies go one way: `page` and [`table`] format; [`measure`] and [`truth`] measure; [`comparison`] is the
 //! report of `antumbra compare`; [`kit`] runs experiments and writes the reports of suites; `suites` and [`studies`]
 //! use the kit; [`list`] has one line per suite.
 #![deny(missing_docs)]

@@ -118,6 +118,13 @@ impl<'a> LoadedScene<'a> {
         Ok(LoadedScene { gpu, renderer, monitor, size })
     }
 
+    /// Renders with one technique after another, shown as the task `name`; see [`LoadedScene::cost`] for `frames`.
+    pub fn render_all(&self, name: &str, specs: &[&Spec], frames: u32) -> Result<Vec<Rendered>, Error> {
+        let progress = self.monitor.task(name);
+        let show = |i: usize, done| progress((i as f32 + done) / specs.len() as f32);
+        specs.iter().enumerate().map(|(i, spec)| self.render(spec, frames, |done| show(i, done))).collect()
+    }
+
     /// Creates a technique and measures it; see [`LoadedScene::cost`] for `frames` and `on_frame`.
     pub fn render(&self, spec: &Spec, frames: u32, on_frame: impl Fn(f32)) -> Result<Rendered, Error> {
         let gpu = self.gpu;

@@ -1,6 +1,6 @@
 //! Progress display and requests to stop: the seam between measurements and the program.
 
-use crate::Error;
+use crate::error::Error;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Displays progress and carries the user's request to stop.

@@ -11,11 +11,11 @@ use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 use std::str::FromStr;
 
-/// Real-time soft shadows of area lights, beside the ray-traced truth.
+/// Real-time soft shadows of area lights, compared with a ray-traced reference.
 #[derive(Debug, Parser)]
 #[command(name = "antumbra", version, arg_required_else_help = true, max_term_width = 110)]
 pub struct Cli {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
@@ -23,22 +23,22 @@ pub struct Cli {
 /// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Draw a scene with one technique
+    /// Render a scene with one technique
     Render(RenderArgs),
-    /// Trace the truth: the fraction of the light that each pixel sees
+    /// Trace the reference: the visible fraction of the light at each pixel
     Reference(ReferenceArgs),
-    /// Compare techniques with the truth: error, milliseconds and megabytes, as a table and as a report with pictures
+    /// Compare techniques with the reference: error, milliseconds and megabytes, as a table and as a report with images
     Compare(CompareArgs),
-    /// Measure the tables and curves of papers anew, theirs beside ours
+    /// Measure the tables and curves of papers anew, the paper's numbers beside ours
     #[command(after_help = list::help())]
     Bench(BenchArgs),
-    /// Put a question that a paper has put to people to an image metric
+    /// Repeat a paper's user study with an image metric
     #[command(subcommand)]
     Study(Study),
-    /// Look at techniques in a window: side by side, or beside the truth
+    /// View techniques in a window: side by side, or beside the reference
     #[cfg(feature = "viewer")]
     View(ViewArgs),
-    /// List the techniques, their settings and where they come from
+    /// List the techniques, their settings and their papers
     Techniques(ListArgs),
     /// List the built-in scenes and their parameters
     Scenes(ListArgs),
@@ -52,16 +52,16 @@ pub enum Command {
 pub struct RenderArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Picture to write, a .png
+    /// Image to write, a .png
     #[arg(short, long, value_name = "FILE", group = "outputs", value_parser = png_path)]
     pub output: Option<PathBuf>,
     /// Technique and its settings: name:key=value,key=value; `antumbra techniques` lists them
     #[arg(short, long, value_name = "SPEC", default_value = "backprojection")]
     pub technique: Technique,
-    /// Visible fraction of the light at each pixel, to write: .npy (float32, height x width), .exr or .png (16-bit grey)
+    /// Visible fraction of the light at each pixel to write: .npy (float32, height x width), .exr or .png (16-bit grey)
     #[arg(long, value_name = "FILE", group = "outputs")]
     pub visibility: Option<ValuesFile>,
-    /// Milliseconds and bytes by pass, to write as JSON
+    /// Milliseconds and bytes by pass to write, a JSON file
     #[arg(long, value_name = "FILE", group = "outputs")]
     pub stats: Option<PathBuf>,
     #[command(flatten)]
@@ -73,11 +73,11 @@ pub struct RenderArgs {
 pub struct ReferenceArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Visible fraction of the light at each pixel, to write: .npy (float32, height x width), .exr or .png (16-bit grey)
+    /// Visible fraction of the light at each pixel to write: .npy (float32, height x width), .exr or .png (16-bit grey)
     #[arg(long, value_name = "FILE")]
     pub visibility: ValuesFile,
-    /// Pixels that errors are measured on, to write: .npy (float32, height x width), 1 where the whole pixel is a
-    /// surface that faces the light, else 0
+    /// Mask of the pixels whose errors count, to write: .npy (float32, height x width), 1 where a surface that faces the
+    /// light covers the whole pixel, else 0
     #[arg(long, value_name = "FILE", value_parser = npy_path)]
     pub valid: Option<PathBuf>,
     #[command(flatten)]
@@ -89,10 +89,10 @@ pub struct ReferenceArgs {
 pub struct CompareArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
-    /// Technique and its settings, name:key=value,key=value, any number of times; `all` stands for every technique
+    /// Technique and its settings, name:key=value,key=value; repeatable; `all` stands for every technique
     #[arg(short, long = "technique", value_name = "SPEC", required = true)]
     pub techniques: Vec<Techniques>,
-    /// Folder of the report, made if need be: index.html, results.json, results.csv, pictures
+    /// Folder of the report, created if missing: index.html, results.json, results.csv, pictures
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -107,14 +107,14 @@ pub struct BenchArgs {
     /// Suites to run, listed below [default: all]
     #[arg(value_name = "SUITE", value_parser = list::find)]
     pub suites: Vec<&'static Suite>,
-    /// Folder of the results, made if need be: for each suite a page, a table in Markdown, JSON and CSV
+    /// Folder of the results, created if missing: for each suite a page, a table in Markdown, JSON and CSV
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-    /// Another scene to measure, named as for `render`, any number of times; for `backprojection`, whose targets want
-    /// the Stanford bunny: a model with "bunny" in its file's name
+    /// Further scene to measure, named as for `render`; repeatable. The targets of `backprojection` need the Stanford
+    /// bunny: a model with "bunny" in its file's name
     #[arg(long = "scene", value_name = "SCENE")]
     pub scenes: Vec<String>,
-    /// Size of the pictures in pixels [default: the suite's]
+    /// Size of the images in pixels [default: the suite's]
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
     #[command(flatten)]
@@ -126,17 +126,17 @@ pub struct BenchArgs {
 /// `antumbra study`.
 #[derive(Debug, Subcommand)]
 pub enum Study {
-    /// How many texels a penumbra of so many pixels needs, for `pvssm` [Shen 2011, figure 9]
+    /// Texels that a penumbra needs by its width in pixels, for `pvssm` [Shen 2011, figure 9]
     Rho(RhoArgs),
 }
 
 /// `antumbra study rho`.
 #[derive(Debug, Args)]
 pub struct RhoArgs {
-    /// Folder of the results, made if need be: a page, a table in Markdown, JSON and CSV
+    /// Folder of the results, created if missing: a page, a table in Markdown, JSON and CSV
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
-    /// Mean FLIP error in the penumbra that is still as good as the reference
+    /// Largest mean FLIP error in the penumbra that counts as equal to the reference
     #[arg(long, value_name = "FLIP", default_value_t = rho::THRESHOLD, value_parser = threshold)]
     pub threshold: f64,
     /// Widest penumbra in pixels; powers of two up to it are searched
@@ -155,7 +155,7 @@ fn threshold(text: &str) -> Result<f64, String> {
 pub struct ViewArgs {
     /// A .glb, .gltf, .obj or .ply file, a scene file (.toml or .json), or builtin:NAME [default: builtin:fence]
     pub scene: Option<String>,
-    /// Technique and its settings, name:key=value,key=value; one stands beside the truth, two beside each other
+    /// Technique and its settings, name:key=value,key=value; one is shown beside the reference, two side by side
     #[arg(short, long = "technique", value_name = "SPEC")]
     pub techniques: Vec<Technique>,
     /// Size of the window in points [default: 1440x900]
@@ -164,7 +164,7 @@ pub struct ViewArgs {
     /// Part of an adapter's name, or its number in `antumbra adapters` [default: the best]
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<AdapterChoice>,
-    /// Take commands from standard input, a JSON object a line, and answer each by a line
+    /// Read commands from standard input, one JSON object per line, and answer each with a line
     #[arg(long)]
     pub commands: bool,
 }
@@ -177,12 +177,12 @@ pub struct ListArgs {
     pub json: bool,
 }
 
-/// What is looked at.
+/// Scene and size of the image.
 #[derive(Debug, Args)]
 pub struct SceneArgs {
     /// A .glb, .gltf, .obj or .ply file, a scene file (.toml or .json), or builtin:NAME (`antumbra scenes` lists them)
     pub scene: String,
-    /// Size of the picture in pixels [default: the scene's own, else 768x768]
+    /// Size of the image in pixels [default: the scene's own, else 768x768]
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
     /// Size of the light in metres, instead of the scene's
@@ -190,34 +190,34 @@ pub struct SceneArgs {
     pub light_size: Option<LightSize>,
 }
 
-/// What draws.
+/// Adapter and timing.
 #[derive(Debug, Args)]
 pub struct GpuArgs {
     /// Part of an adapter's name, or its number in `antumbra adapters` [default: the best]
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<AdapterChoice>,
-    /// Frames whose median time counts, after two that warm up (one if it takes over a second)
+    /// Timed frames, whose median counts, after two warm-up frames (one if it takes over a second)
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub frames: u32,
 }
 
-/// How finely the truth is traced, and where it is kept.
+/// Sampling and cache of the reference.
 #[derive(Clone, Debug, Args)]
 pub struct TruthArgs {
-    /// Shadow rays of a pixel in all, shared among its pixel samples
+    /// Shadow rays per pixel, shared among its pixel samples
     #[arg(long, value_name = "N", default_value_t = 1024, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub light_samples: u32,
-    /// Primary rays of a pixel; a square number gives a regular grid
+    /// Primary rays per pixel; a square number gives a regular grid
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u32).range(1..=4096))]
     pub pixel_samples: u32,
-    /// Another seed gives other, independent samples
+    /// Seed of the samples
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
-    /// Folder that keeps traced references [default: antumbra in the user's cache folder: on Linux $XDG_CACHE_HOME, else
+    /// Folder of traced references [default: antumbra in the user's cache folder: on Linux $XDG_CACHE_HOME, else
     /// ~/.cache]
     #[arg(long, value_name = "DIR", env = "ANTUMBRA_CACHE")]
     pub cache: Option<PathBuf>,
-    /// Trace anew and keep nothing, whatever --cache says
+    /// Trace anew and store nothing, regardless of --cache
     #[arg(long)]
     pub no_cache: bool,
 }
@@ -241,7 +241,7 @@ impl FromStr for Technique {
     }
 }
 
-/// A SPEC with what is written `key=@FILE` replaced by what is in the file: a point a line, as settings of points take.
+/// A SPEC with each `key=@FILE` replaced by the file's points, one per line.
 fn with_files(text: &str) -> Result<String, SpecError> {
     let Some((name, values)) = text.split_once(':').filter(|(_, values)| values.contains("=@")) else {
         return Ok(text.to_owned());
@@ -261,7 +261,7 @@ fn with_files(text: &str) -> Result<String, SpecError> {
     Ok(format!("{name}:{}", parts.join(",")))
 }
 
-/// One technique, or all.
+/// One technique or all.
 #[derive(Clone, Debug)]
 pub struct Techniques(pub Vec<Technique>);
 
@@ -274,7 +274,7 @@ impl FromStr for Techniques {
     }
 }
 
-/// Size of a picture in pixels.
+/// Size of an image in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Size(pub [u32; 2]);
 

@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all, in the formats that the program writes.
+//! Output files, written whole or not at all, and their formats.
 
 use crate::error::CliError;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use tempfile::NamedTempFile;
 
-/// A format for one number a pixel.
+/// A format for one number per pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Format {
     /// NumPy, float32, height x width.
@@ -18,12 +18,12 @@ pub enum Format {
     Png,
 }
 
-/// An output file whose name says its format.
+/// An output file; its extension determines the format.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ValuesFile {
     /// The file.
     pub path: PathBuf,
-    /// What its ending says.
+    /// Format of the extension.
     pub format: Format,
 }
 
@@ -69,7 +69,7 @@ fn wrong_ending(found: &str, wanted: &str) -> String {
     }
 }
 
-/// One number a pixel, row 0 on top, as the bytes of a file.
+/// One number per pixel, row 0 on top, as the bytes of a file.
 pub fn encode_values(format: Format, size: [u32; 2], values: &[f32]) -> io::Result<Vec<u8>> {
     match format {
         Format::Npy => npy(size, values),
@@ -119,15 +119,14 @@ fn png([width, height]: [u32; 2], bytes: &[u8], color: image::ExtendedColorType)
     Ok(out)
 }
 
-/// The files of one run. All are written aside first and moved into place together, so that an error on the last one
-/// leaves none.
+/// The files of one run. All are written to temporary files and then moved together, so an error leaves none.
 #[derive(Default)]
 pub struct Outputs {
     staged: Vec<(NamedTempFile, PathBuf)>,
 }
 
 impl Outputs {
-    /// Writes a file aside.
+    /// Writes a temporary file.
     pub fn stage(&mut self, path: &Path, bytes: io::Result<Vec<u8>>) -> Result<(), CliError> {
         let failed = |source| CliError::Write { path: path.to_owned(), source };
         let bytes = bytes.map_err(failed)?;
@@ -146,7 +145,7 @@ impl Outputs {
     }
 }
 
-/// Finds out before the work whether these files could be written after it.
+/// Checks before the work whether these files can be written.
 pub fn check_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), CliError> {
     let mut seen: Vec<&Path> = Vec::new();
     for path in paths {
@@ -162,7 +161,7 @@ pub fn check_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), 
     Ok(())
 }
 
-/// Finds out before the work whether a folder can be made, or filled if it is there.
+/// Checks before the work whether a folder can be created, or written to if it exists.
 pub fn check_new_folder(path: &Path) -> Result<(), CliError> {
     let nearest = path.ancestors().map(or_here).find(|p| p.exists()).unwrap_or(Path::new("."));
     check_folder(path, nearest)
@@ -191,11 +190,11 @@ fn or_here(path: &Path) -> &Path {
     if path.as_os_str().is_empty() { Path::new(".") } else { path }
 }
 
-/// A file in `folder` that vanishes unless it is moved into place.
+/// A file in `folder` that is deleted unless it is moved.
 fn temporary(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".antumbra-");
-    // The result should be as readable as any file that a program makes, within the user's umask.
+    // Readable like any new file, within the user's umask.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)

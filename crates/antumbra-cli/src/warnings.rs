@@ -1,4 +1,4 @@
-//! What importers and the library warn of, as one line each on stderr.
+//! Warnings of importers and the library, one line each on stderr.
 
 use std::fmt;
 use tracing::{Event, Subscriber};
@@ -9,11 +9,11 @@ use tracing_subscriber::layer::SubscriberExt;
 use tracing_subscriber::registry::LookupSpan;
 use tracing_subscriber::util::SubscriberInitExt;
 
-/// Sends warnings of our own crates to stderr; drivers and libraries chatter too much.
+/// Sends warnings of our own crates to stderr; those of drivers and libraries are too many.
 pub fn show() {
     let lines = layer().event_format(Line).with_writer(std::io::stderr);
     let ours = Targets::new().with_target("antumbra", LevelFilter::WARN);
-    // Fails only where a subscriber is installed already, which then shows them.
+    // Fails only if a subscriber is installed already; it then shows them.
     let _ = tracing_subscriber::registry().with(lines).with(ours).try_init();
 }
 

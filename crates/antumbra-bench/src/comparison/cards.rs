@@ -1,5 +1,6 @@
 //! One card per technique: images, metrics, cost.
 
+use super::columns::METRICS;
 use super::images::Images;
 use super::model::{Comparison, Entry};
 use crate::measure::Pass;
@@ -96,24 +97,16 @@ pub fn color_bar() -> Markup {
 }
 
 fn metrics(entry: &Entry) -> Markup {
-    let (f, c) = (&entry.metrics, &entry.metrics.counts);
-    let or_dash = |pixels: u64, value: f64| if pixels > 0 { text::metric(value) } else { text::DASH.into() };
-    let rows = [
-        ("Average error", "in shadow", or_dash(c.shadowed, f.average_error)),
-        ("RMSE", "all valid pixels", text::metric(f.rmse)),
-        ("99th percentile", "of |error|", text::metric(f.p99)),
-        ("Largest error", "", text::metric(f.max)),
-        ("Leak", "light in the umbra", or_dash(c.umbra, f.leak)),
-        ("Acne", "darkness where lit", or_dash(c.lit, f.acne)),
-        ("SSIM", "1 is equal", text::metric(f.ssim)),
-        ("FLIP", "0 is equal", text::metric(f.flip)),
-    ];
+    let (c, largest) = (&entry.metrics.counts, text::metric(entry.metrics.max));
     let classes = [("umbra", c.umbra), ("penumbra", c.penumbra), ("lit", c.lit)];
     html! {
         div {
             h4 { "Error" }
             dl.numbers {
-                @for (name, help, value) in rows { div { dt { (name) " " small { (help) } } dd { (value) } } }
+                @for metric in &METRICS[..7] {
+                    div title=(metric.help) { dt { (metric.heading) } dd { (text::or_dash(metric.of(entry))) } }
+                }
+                div { dt { "Largest error" } dd { (largest) } }
             }
             p.classes {
                 (text::count(c.valid)) " valid pixels: "

@@ -16,6 +16,13 @@ pub struct Metric {
     pub bar: bool,
 }
 
+impl Metric {
+    /// The formatted value.
+    pub fn of(&self, entry: &Entry) -> Option<String> {
+        (self.value)(entry).map(self.text)
+    }
+}
+
 const fn metric(heading: &'static str, help: &'static str, value: fn(&Entry) -> Option<f64>) -> Metric {
     Metric { heading, help, value, text: text::metric, more_is_better: false, bar: false }
 }

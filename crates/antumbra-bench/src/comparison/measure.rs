@@ -5,7 +5,6 @@ use crate::measure::{LoadedScene, Rendered};
 use crate::truth::{Truth, TruthSettings};
 use crate::{Error, Monitor};
 use antumbra::{Gpu, Spec};
-use antumbra_metrics::RgbImage;
 use antumbra_scene::Scene;
 
 /// Renders the scene, which is called `name`, with every technique and compares the results with the reference. The
@@ -20,9 +19,9 @@ pub fn compare(
 ) -> Result<Comparison, Error> {
     let loaded = LoadedScene::new(gpu, monitor, scene, [width, height])?;
     // Techniques first: their errors appear before the long tracing.
-    let rendered = render_all(&loaded, monitor, specs, frames)?;
+    let rendered = loaded.render_all("Rendering", specs, frames)?;
     let truth = Truth::of(scene, [width, height], truth_settings, monitor)?;
-    let entry = |(spec, (rendered, image))| judged(spec, rendered, image, &truth);
+    let entry = |(spec, rendered)| judged(spec, rendered, &loaded, &truth);
     let entries = specs.iter().copied().zip(rendered).map(entry).collect::<Result<_, _>>()?;
     Ok(Comparison {
         scene: name.to_owned(),
@@ -45,21 +44,7 @@ pub fn compare(
     })
 }
 
-fn render_all(
-    scene: &LoadedScene,
-    monitor: &dyn Monitor,
-    specs: &[&Spec],
-    frames: u32,
-) -> Result<Vec<(Rendered, RgbImage)>, Error> {
-    let progress = monitor.task("Rendering");
-    let render = |(i, spec): (usize, &&Spec)| {
-        let show = |done| progress((i as f32 + done) / specs.len() as f32);
-        Ok((scene.render(spec, frames, show)?, scene.image()?))
-    };
-    specs.iter().enumerate().map(render).collect()
-}
-
-fn judged(spec: &Spec, rendered: Rendered, image: RgbImage, truth: &Truth) -> Result<Entry, Error> {
+fn judged(spec: &Spec, rendered: Rendered, scene: &LoadedScene, truth: &Truth) -> Result<Entry, Error> {
     let Rendered { cost, visibility, .. } = rendered;
     Ok(Entry {
         technique: spec.technique.name.to_owned(),
@@ -70,7 +55,7 @@ fn judged(spec: &Spec, rendered: Rendered, image: RgbImage, truth: &Truth) -> Re
         metrics: truth.metrics(&spec.text, &visibility)?,
         heat_map: truth.heat_map(&spec.text, &visibility)?,
         cost,
-        image,
+        image: scene.shaded(&visibility)?,
         visibility,
     })
 }

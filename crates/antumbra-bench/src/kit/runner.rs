@@ -59,12 +59,20 @@ impl Runner<'_> {
         experiments.iter().enumerate().map(trial).collect()
     }
 
+    /// Runs groups of experiments. Returns all trials and the number in each group, for [`split`](super::trial::split).
+    pub fn run_groups<const N: usize>(&self, groups: [Vec<Experiment>; N]) -> Result<(Vec<Trial>, [usize; N]), Error> {
+        let counts = groups.each_ref().map(Vec::len);
+        Ok((self.run_all(&groups.into_iter().flatten().collect::<Vec<_>>())?, counts))
+    }
+
     /// Measures the techniques next to each other and then traces the reference.
     pub fn run(&self, experiment: &Experiment) -> Result<Trial, Error> {
         let Experiment { scene, size, specs, .. } = experiment;
         let loaded = self.load(scene, *size)?;
         let frames = if experiment.timed { self.frames } else { 0 };
-        let rendered = self.render_all(experiment, &loaded, frames)?;
+        let task = format!("Measuring {}", experiment.name);
+        let mut rendered = loaded.render_all(&task, &specs.iter().collect::<Vec<_>>(), frames)?;
+        use_one_clock(&mut rendered);
         let settings = (experiment.truth)(&self.truth);
         let truth = Truth::of(scene, *size, &settings, self.monitor)?;
         self.monitor.check()?;
@@ -87,17 +95,6 @@ impl Runner<'_> {
             image: loaded.shaded(&truth.reference.visibility)?,
             runs,
         })
-    }
-
-    fn render_all(&self, of: &Experiment, scene: &LoadedScene, frames: u32) -> Result<Vec<Rendered>, Error> {
-        let progress = self.monitor.task(&format!("Measuring {}", of.name));
-        let render = |(i, spec)| {
-            let show = |done| progress((i as f32 + done) / of.specs.len() as f32);
-            scene.render(spec, frames, show)
-        };
-        let mut rendered: Vec<Rendered> = of.specs.iter().enumerate().map(render).collect::<Result<_, _>>()?;
-        use_one_clock(&mut rendered);
-        Ok(rendered)
     }
 }
 

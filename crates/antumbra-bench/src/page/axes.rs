@@ -78,8 +78,27 @@ pub struct Titles<'a> {
     pub less_is_better: bool,
 }
 
+/// A whole plot: legend of keys and names, grid, and the curves or points. `label` is its text for screen readers.
+pub fn plot(axes: [&Axis; 2], titles: &Titles, label: &str, legend: &[(Markup, &str)], content: Markup) -> Markup {
+    html! {
+        @if !legend.is_empty() {
+            ul.legend {
+                @for (key, name) in legend {
+                    li { svg.plot.key viewBox="0 0 34 12" aria-hidden="true" { (key) } (name) }
+                }
+            }
+        }
+        div.scroll {
+            svg.plot viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img" aria-label=(label) {
+                (grid(axes, titles))
+                (content)
+            }
+        }
+    }
+}
+
 /// Lines, numbers and titles.
-pub fn grid(x: &Axis, y: &Axis, titles: &Titles) -> Markup {
+fn grid([x, y]: [&Axis; 2], titles: &Titles) -> Markup {
     let label = |v: f64| format!("{}", (v * 1e9).round() / 1e9);
     html! {
         @for tick in x.ticks() {

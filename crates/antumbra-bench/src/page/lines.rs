@@ -1,6 +1,6 @@
 //! Curves over logarithmic axes.
 
-use super::axes::{Axis, HEIGHT, RIGHT, Titles, WIDTH, grid};
+use super::axes::{self, Axis, RIGHT, Titles};
 use maud::{Markup, html};
 
 /// Room around the curves.
@@ -99,40 +99,26 @@ pub fn plot(lines: &Lines) -> Markup {
     let x = Axis::across(lines.points().map(|p| p.x), ROOM);
     let y = Axis::upwards(lines.points().map(|p| p.y), ROOM);
     let titles = Titles { x: &lines.x, y: &lines.y, less_is_better: lines.less_is_better };
-    html! {
-        (legend(&lines.curves))
-        div.scroll {
-            svg.plot viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img"
-                aria-label=(format!("{} against {}, both logarithmic", lines.y, lines.x)) {
-                (grid(&x, &y, &titles))
-                @if let Some(corner) = lines.corner() {
-                    @for guide in &lines.guides { (guide_line(*guide, corner, &x, &y)) }
-                }
-                @for curve in &lines.curves { (curve_line(curve, &x, &y)) }
-            }
+    let key = |curve: &Curve| {
+        html! {
+            polyline class=(class(curve)) points="1,6 33,6" {}
+            circle class=(class(curve)) cx="17" cy="6" r="3.5" {}
         }
-    }
+    };
+    let legend: Vec<_> = lines.curves.iter().map(|curve| (key(curve), curve.label.as_str())).collect();
+    let content = html! {
+        @if let Some(corner) = lines.corner() {
+            @for guide in &lines.guides { (guide_line(*guide, corner, &x, &y)) }
+        }
+        @for curve in &lines.curves { (curve_line(curve, &x, &y)) }
+    };
+    let label = format!("{} against {}, both logarithmic", lines.y, lines.x);
+    axes::plot([&x, &y], &titles, &label, &legend, content)
 }
 
 fn class(curve: &Curve) -> String {
     let dashed = if curve.dashed { " dashed" } else { "" };
     format!("curve c{}{dashed}", curve.color % COLORS)
-}
-
-fn legend(curves: &[Curve]) -> Markup {
-    html! {
-        ul.legend {
-            @for curve in curves {
-                li {
-                    svg.plot.key viewBox="0 0 34 12" aria-hidden="true" {
-                        polyline class=(class(curve)) points="1,6 33,6" {}
-                        circle class=(class(curve)) cx="17" cy="6" r="3.5" {}
-                    }
-                    (curve.label)
-                }
-            }
-        }
-    }
 }
 
 fn curve_line(curve: &Curve, x: &Axis, y: &Axis) -> Markup {
@@ -168,6 +154,7 @@ fn guide_line((label, exponent): (&str, f64), (x0, y0): (f64, f64), x: &Axis, y:
 
 #[cfg(test)]
 mod tests {
+    use super::super::axes::HEIGHT;
     use super::*;
 
     fn curve(label: &str, points: &[(f64, f64)]) -> Curve {

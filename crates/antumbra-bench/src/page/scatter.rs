@@ -1,6 +1,6 @@
 //! Error against milliseconds, one point per technique; points may be links and belong to groups.
 
-use super::axes::{Axis, BOTTOM, HEIGHT, LEFT, TOP, Titles, WIDTH, grid};
+use super::axes::{self, Axis, BOTTOM, LEFT, TOP, Titles, WIDTH};
 use super::{lines::COLORS, text};
 use maud::{Markup, html};
 
@@ -124,35 +124,15 @@ pub fn plot(points: &[Point], groups: &[&str]) -> Markup {
             None => html! { g { (drawn) } },
         }
     };
-    html! {
-        (legend(groups))
-        div.scroll {
-            svg.plot viewBox=(format!("0 0 {WIDTH} {HEIGHT}")) role="img"
-                aria-label="Average error against GPU milliseconds, both logarithmic; lower left is better" {
-                (grid(&x, &y, &titles))
-                polyline.front points=(front(&dots, &best)) {}
-                @for i in (0..points.len()).filter(|i| shown[*i]) { (leader(dots[i], &areas[i])) }
-                @for i in 0..points.len() { (drawn(i)) }
-            }
-        }
-    }
-}
-
-fn legend(groups: &[&str]) -> Markup {
-    html! {
-        @if !groups.is_empty() {
-            ul.legend {
-                @for (i, group) in groups.iter().enumerate() {
-                    li {
-                        svg.plot.key viewBox="0 0 34 12" aria-hidden="true" {
-                            circle class=(format!("dot best {}", color(i))) cx="17" cy="6" r="4" {}
-                        }
-                        (group)
-                    }
-                }
-            }
-        }
-    }
+    let key = |i: usize| html! { circle class=(format!("dot best {}", color(i))) cx="17" cy="6" r="4" {} };
+    let legend: Vec<_> = groups.iter().enumerate().map(|(i, group)| (key(i), *group)).collect();
+    let content = html! {
+        polyline.front points=(front(&dots, &best)) {}
+        @for i in (0..points.len()).filter(|i| shown[*i]) { (leader(dots[i], &areas[i])) }
+        @for i in 0..points.len() { (drawn(i)) }
+    };
+    let label = "Average error against GPU milliseconds, both logarithmic; lower left is better";
+    axes::plot([&x, &y], &titles, label, &legend, content)
 }
 
 fn color(group: usize) -> String {

@@ -45,10 +45,8 @@ const TREES: [u32; 4] = [1, 4, 16, 64];
 
 fn run(runner: &Runner) -> Result<Report, Error> {
     let configurations = specs::all()?;
-    let groups = groups(runner, &configurations)?;
-    let counts = groups.each_ref().map(Vec::len);
-    let experiments: Vec<Experiment> = groups.into_iter().flatten().collect();
-    Ok(report(runner.run_all(&experiments)?, counts, &configurations))
+    let (trials, counts) = runner.run_groups(groups(runner, &configurations)?)?;
+    Ok(report(trials, counts, &configurations))
 }
 
 /// Experiments of scenes, lights, maps, images, triangles.

@@ -33,14 +33,11 @@ enum Limit {
     AtLeast(f64),
 }
 
-/// A number or a bound.
+/// The range of a measured value: a number, or a bound where fixed sampling was not measured with enough or few maps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Measured {
-    Exactly(f64),
-    /// Even the most fixed samples err more.
-    AtLeast(f64),
-    /// Even the fewest fixed samples err less.
-    AtMost(f64),
+struct Measured {
+    low: f64,
+    high: f64,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,9 +146,9 @@ impl Target {
         let number = |value| self.what.text(value);
         let measured = match found {
             None => text::DASH.to_owned(),
-            Some(Measured::Exactly(value)) => number(value) + &self.spread(&trials),
-            Some(Measured::AtLeast(value)) => format!("≥ {}", number(value)),
-            Some(Measured::AtMost(value)) => format!("≤ {}", number(value)),
+            Some(Measured { low, high }) if low == high => number(low) + &self.spread(&trials),
+            Some(Measured { low, high: f64::INFINITY }) => format!("≥ {}", number(low)),
+            Some(Measured { high, .. }) => format!("≤ {}", number(high)),
         };
         let scenes = match self.scenes {
             [scene] if trials.is_empty() => format!("no {scene}"),
@@ -163,9 +160,9 @@ impl Target {
 
     /// The extremes of single scenes, where there are several.
     fn spread(&self, trials: &[&Trial]) -> String {
-        let of_one = |trial: &&Trial| match self.what.of(self.spec, &[trial])? {
-            Measured::Exactly(value) => Some(value),
-            _ => None,
+        let of_one = |trial: &&Trial| {
+            let Measured { low, high } = self.what.of(self.spec, &[trial])?;
+            (low == high).then_some(low)
         };
         let Some(values) = trials.iter().map(of_one).collect::<Option<Vec<f64>>>() else { return String::new() };
         let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(low, high), v| (low.min(*v), high.max(*v)));
@@ -202,23 +199,24 @@ impl What {
     fn of(self, spec: &str, trials: &[&Trial]) -> Option<Measured> {
         let own = Mean::of(trials, spec)?;
         match self {
-            What::Error => Some(Measured::Exactly(own.error)),
-            What::OverPcss => Some(Measured::Exactly(own.ms / Mean::of(trials, PCSS)?.ms)),
+            What::Error => Some(Measured::exactly(own.error)),
+            What::OverPcss => Some(Measured::exactly(own.ms / Mean::of(trials, PCSS)?.ms)),
             What::UnderFixed => {
                 let means: Vec<Mean> = FIXED.iter().map(|n| Mean::of(trials, &fixed(*n))).collect::<Option<_>>()?;
-                Some(fixed_ms_at(own.error, &means)?.map(|ms| ms / own.ms))
+                Some(fixed_ms_at(own.error, &means)?.over(own.ms))
             }
         }
     }
 }
 
 impl Measured {
-    fn map(self, change: impl Fn(f64) -> f64) -> Measured {
-        match self {
-            Measured::Exactly(value) => Measured::Exactly(change(value)),
-            Measured::AtLeast(value) => Measured::AtLeast(change(value)),
-            Measured::AtMost(value) => Measured::AtMost(change(value)),
-        }
+    fn exactly(value: f64) -> Measured {
+        Measured { low: value, high: value }
+    }
+
+    /// For the positive values here.
+    fn over(self, divisor: f64) -> Measured {
+        Measured { low: self.low / divisor, high: self.high / divisor }
     }
 }
 
@@ -226,12 +224,14 @@ impl Measured {
 fn fixed_ms_at(error: f64, fixed: &[Mean]) -> Option<Measured> {
     let (first, last) = (fixed.first()?, fixed.last()?);
     if error >= first.error {
-        return Some(Measured::AtMost(first.ms));
+        return Some(Measured { low: f64::NEG_INFINITY, high: first.ms });
     }
     let between = |pair: &&[Mean]| pair[0].error > error && error >= pair[1].error;
-    let Some([few, many]) = fixed.windows(2).find(between) else { return Some(Measured::AtLeast(last.ms)) };
+    let Some([few, many]) = fixed.windows(2).find(between) else {
+        return Some(Measured { low: last.ms, high: f64::INFINITY });
+    };
     let part = (few.error / error).ln() / (few.error / many.error).ln();
-    Some(Measured::Exactly(few.ms * (many.ms / few.ms).powf(part)))
+    Some(Measured::exactly(few.ms * (many.ms / few.ms).powf(part)))
 }
 
 impl Limit {
@@ -243,12 +243,7 @@ impl Limit {
     }
 
     fn verdict(self, measured: Measured) -> Verdict {
-        // The range of values that the measurement allows.
-        let (low, high) = match measured {
-            Measured::Exactly(value) => (value, value),
-            Measured::AtLeast(value) => (value, f64::INFINITY),
-            Measured::AtMost(value) => (f64::NEG_INFINITY, value),
-        };
+        let Measured { low, high } = measured;
         let (always, never) = match self {
             Limit::AtMost(limit) => (high <= limit, low > limit),
             Limit::AtLeast(limit) => (low >= limit, high < limit),
@@ -278,6 +273,14 @@ mod tests {
     use crate::kit::Content;
     use crate::kit::made_up::{run, trial};
 
+    fn at_most(high: f64) -> Measured {
+        Measured { low: f64::NEG_INFINITY, high }
+    }
+
+    fn at_least(low: f64) -> Measured {
+        Measured { low, high: f64::INFINITY }
+    }
+
     fn means(of: &[(f64, f64)]) -> Vec<Mean> {
         of.iter().map(|(error, ms)| Mean { error: *error, ms: *ms }).collect()
     }
@@ -285,19 +288,19 @@ mod tests {
     #[test]
     fn fixed_sampling_of_the_same_error_lies_between_the_measured_ones() {
         let fixed = means(&[(0.04, 10.0), (0.02, 40.0), (0.01, 160.0)]);
-        assert_eq!(fixed_ms_at(0.05, &fixed), Some(Measured::AtMost(10.0)));
-        assert_eq!(fixed_ms_at(0.005, &fixed), Some(Measured::AtLeast(160.0)));
-        let Some(Measured::Exactly(ms)) = fixed_ms_at(0.02 / 2f64.sqrt(), &fixed) else { panic!("between") };
-        assert!((ms - 80.0).abs() < 1e-6, "{ms}");
+        assert_eq!(fixed_ms_at(0.05, &fixed), Some(at_most(10.0)));
+        assert_eq!(fixed_ms_at(0.005, &fixed), Some(at_least(160.0)));
+        let Some(Measured { low: ms, high }) = fixed_ms_at(0.02 / 2f64.sqrt(), &fixed) else { panic!("between") };
+        assert!((ms - 80.0).abs() < 1e-6 && ms == high, "{ms}");
         assert_eq!(fixed_ms_at(0.1, &[]), None);
     }
 
     #[test]
     fn a_bound_decides_only_where_it_can() {
         use Verdict::{Met, Missed, Open};
-        let most = [Measured::Exactly(3.0), Measured::AtLeast(2.0), Measured::AtLeast(4.0), Measured::AtMost(2.0)];
+        let most = [Measured::exactly(3.0), at_least(2.0), at_least(4.0), at_most(2.0)];
         assert_eq!(most.map(|m| Limit::AtMost(3.0).verdict(m)), [Met, Open, Missed, Met]);
-        let least = [Measured::Exactly(9.0), Measured::AtLeast(9.0), Measured::AtLeast(10.0), Measured::AtMost(2.0)];
+        let least = [Measured::exactly(9.0), at_least(9.0), at_least(10.0), at_most(2.0)];
         assert_eq!(least.map(|m| Limit::AtLeast(10.0).verdict(m)), [Missed, Open, Met, Missed]);
     }
 

@@ -3,9 +3,10 @@
 use crate::Error;
 use crate::kit::{Ratio, Runner, Section};
 use crate::page::text;
+use crate::suites::shapes::{instance, rectangle};
 use crate::table::{Table, column};
-use antumbra_scene::{Camera, Instance, Material, Mesh, RectLight, Scene};
-use glam::{Affine3A, Vec2, Vec3};
+use antumbra_scene::{Camera, Material, Mesh, RectLight, Scene};
+use glam::{Vec2, Vec3};
 
 /// Pixels a side of the image before supersampling.
 const SIDE: u32 = 64;
@@ -29,30 +30,23 @@ pub struct Antialiased {
     rows: Vec<Row>,
 }
 
-/// A level rectangle.
-fn sheet(center: [f32; 3], half: [f32; 2]) -> Mesh {
-    let corner = |[x, z]: [f32; 2]| Vec3::from(center) + Vec3::new(x * half[0], 0.0, z * half[1]);
-    let positions = [[-1.0, 1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, -1.0]].map(corner).to_vec();
-    Mesh { positions, indices: vec![0, 1, 2, 0, 2, 3], ..Mesh::default() }
-}
-
 /// Bars of a grid over a floor that extends to the horizon, and a small light.
 fn grid() -> Scene {
     let mut grid = Mesh::default();
     for at in (-50..=50).map(|i| 4.0 * i as f32) {
-        for bar in [sheet([at, 8.0, 0.0], [0.8, 200.0]), sheet([0.0, 8.0, at], [200.0, 0.8])] {
+        for bar in [rectangle(Vec3::new(at, 8.0, 0.0), [0.8, 200.0]), rectangle(Vec3::new(0.0, 8.0, at), [200.0, 0.8])]
+        {
             let first = grid.positions.len() as u32;
             grid.positions.extend(bar.positions);
             grid.indices.extend(bar.indices.iter().map(|i| i + first));
         }
     }
-    let meshes = vec![sheet([0.0; 3], [400.0; 2]), grid];
-    let instance = |mesh| Instance { mesh, world_from_object: Affine3A::IDENTITY, receiver_only: mesh == 0 };
+    let meshes = vec![rectangle(Vec3::ZERO, [400.0; 2]), grid];
     let (eye, target) = (Vec3::new(0.5, 3.0, 90.0), Vec3::new(1.5, 0.32, 78.0));
     let (center, below) = (Vec3::new(5.0, 60.0, 8.0), Vec3::new(5.0, 0.0, 7.9));
     Scene {
         name: "grid".into(),
-        instances: (0..meshes.len()).map(instance).collect(),
+        instances: (0..meshes.len()).map(|mesh| instance(mesh, mesh == 0)).collect(),
         meshes,
         materials: vec![Material::default()],
         camera: Camera { eye, target, up: Vec3::Y, fov_y_deg: 24.0, near: 0.05, far: 1000.0 },

@@ -24,10 +24,7 @@ pub const SUITE: Suite = Suite {
 fn run(runner: &Runner) -> Result<Report, Error> {
     let scale = Scale::of(runner);
     let slope = figures::tuned_slope(runner, scale)?;
-    let groups = groups(scale, slope)?;
-    let counts = groups.each_ref().map(Vec::len);
-    let experiments: Vec<Experiment> = groups.into_iter().flatten().collect();
-    let trials = runner.run_all(&experiments)?;
+    let (trials, counts) = runner.run_groups(groups(scale, slope)?)?;
     Ok(report(trials, counts, &antialiasing::measure(runner)?))
 }
 

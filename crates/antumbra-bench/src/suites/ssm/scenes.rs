@@ -1,6 +1,7 @@
 //! The scenes of the curves: an occluder a fifth of the scene wide, between the ground and a light that faces it.
 
 use crate::Error;
+use crate::suites::shapes::{instance, rectangle};
 use antumbra_scene::{Aabb, Camera, Instance, Material, Mesh, RectLight, Scene, builtin};
 use glam::{Affine3A, Vec2, Vec3};
 
@@ -42,10 +43,8 @@ impl Default for Placement {
 impl Occluder {
     /// A square parallel to the light.
     pub fn square() -> Occluder {
-        let corners = [(-0.5, 0.5), (0.5, 0.5), (0.5, -0.5), (-0.5, -0.5)];
-        let positions = corners.map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec();
-        let mesh = Mesh { positions, indices: vec![0, 1, 2, 0, 2, 3], ..Mesh::default() };
-        Occluder::of("square", vec![mesh], vec![whole(0)])
+        let mesh = rectangle(Vec3::ZERO, [0.5; 2]);
+        Occluder::of("square", vec![mesh], vec![instance(0, false)])
     }
 
     /// All casters of a scene.
@@ -96,11 +95,7 @@ impl Occluder {
     }
 
     fn scene_of(&self, places: &[Vec3], light: f32) -> Scene {
-        let ground = Mesh {
-            positions: [(-3.0, 3.0), (3.0, 3.0), (3.0, -3.0), (-3.0, -3.0)].map(|(x, z)| Vec3::new(x, 0.0, z)).to_vec(),
-            indices: vec![0, 1, 2, 0, 2, 3],
-            ..Mesh::default()
-        };
+        let ground = rectangle(Vec3::ZERO, [3.0; 2]);
         let middle = self.bounds.center().with_y(self.bounds.min.y);
         let placed = places.iter().flat_map(|at| {
             let to = Affine3A::from_translation(*at)
@@ -112,13 +107,12 @@ impl Occluder {
                 ..*p
             })
         });
-        let ground_instance = Instance { receiver_only: true, ..whole(0) };
         let reach = places.iter().fold(0.0f32, |m, p| m.max(p.x.abs()).max(p.z.abs()));
         Scene {
             name: self.name.clone(),
             meshes: std::iter::once(ground).chain(self.meshes.iter().cloned()).collect(),
             materials: vec![Material::default()],
-            instances: std::iter::once(ground_instance).chain(placed).collect(),
+            instances: std::iter::once(instance(0, true)).chain(placed).collect(),
             camera: Camera {
                 eye: Vec3::new(0.25, 1.0, 1.0) * (1.0 + reach),
                 target: Vec3::ZERO,
@@ -137,8 +131,4 @@ impl Occluder {
             size: None,
         }
     }
-}
-
-fn whole(mesh: usize) -> Instance {
-    Instance { mesh, world_from_object: Affine3A::IDENTITY, receiver_only: false }
 }

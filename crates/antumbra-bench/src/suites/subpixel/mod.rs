@@ -5,7 +5,7 @@ mod samples;
 mod table;
 
 use crate::Error;
-use crate::kit::{Experiment, Report, Runner, Suite, Trial, split};
+use crate::kit::{Report, Runner, Suite, Trial, split};
 
 pub const SUITE: Suite = Suite {
     name: "subpixel",
@@ -17,10 +17,7 @@ pub const SUITE: Suite = Suite {
 };
 
 fn run(runner: &Runner) -> Result<Report, Error> {
-    let groups = [table::experiments(runner)?, samples::experiments(runner)?];
-    let counts = groups.each_ref().map(Vec::len);
-    let experiments: Vec<Experiment> = groups.into_iter().flatten().collect();
-    let trials = runner.run_all(&experiments)?;
+    let (trials, counts) = runner.run_groups([table::experiments(runner)?, samples::experiments(runner)?])?;
     Ok(report(trials, counts, rays::compare(runner)?))
 }
 

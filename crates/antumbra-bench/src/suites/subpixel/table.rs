@@ -1,7 +1,7 @@
 //! Table 1, and the cost of a pixel's samples.
 
 use crate::Error;
-use crate::kit::{Content, Experiment, Ratio, Run, Runner, Section, Trial};
+use crate::kit::{Content, Experiment, Ratio, Runner, Section, Trial};
 use crate::page::text;
 use crate::table::{Table, column};
 use antumbra_scene::{Scene, builtin};
@@ -92,82 +92,63 @@ fn row_of(trial: &Trial) -> Option<&'static Row> {
 }
 
 /// A row of the table: our measurement of a scene, or the paper's.
-enum Line<'a> {
-    Ours { trial: &'a Trial, samples: u32, run: &'a Run, counts: &'a Run },
-    Paper(&'static Row),
+struct Line {
+    scene: String,
+    samples: u32,
+    triangles: u64,
+    /// Silhouette texels, silhouette pixels, evaluations.
+    counts: [String; 3],
+    /// Milliseconds of the stages.
+    stages: [f64; 3],
+    ms: String,
+    over_exact: String,
 }
 
-impl<'a> Line<'a> {
-    /// Both rows of a scene, where they exist.
-    fn of(trial: &'a Trial) -> impl Iterator<Item = Line<'a>> {
-        let samples = row_of(trial).map_or(32, |r| r.samples);
-        let ours = trial.run(&spec(samples)).zip(trial.run(&counted(samples)));
-        let ours = ours.map(|(run, counts)| Line::Ours { trial, samples, run, counts });
-        ours.into_iter().chain(row_of(trial).map(Line::Paper))
-    }
-
-    /// A count: the technique's statistic, or the paper's.
-    fn count(&self, stat: &str, paper: fn(&Row) -> u64) -> String {
-        match self {
-            Line::Ours { counts, .. } => counts.count(stat),
-            Line::Paper(row) => text::count(paper(row)),
-        }
-    }
-
-    /// Milliseconds of a stage, by timestamps.
-    fn stage(&self, stage: usize) -> String {
-        text::ms(match self {
-            Line::Ours { run, .. } => run.cost.ms_of(|p| STAGES[stage].contains(&p.name.as_str())).unwrap_or(0.0),
-            Line::Paper(row) => row.ms[stage],
-        })
-    }
+/// Both rows of a scene, where they exist.
+fn lines(trial: &Trial) -> impl Iterator<Item = Line> {
+    let samples = row_of(trial).map_or(32, |r| r.samples);
+    let runs = trial.run(&spec(samples)).zip(trial.run(&counted(samples)));
+    let ours = runs.map(|(run, counts)| Line {
+        scene: trial.scene.clone(),
+        samples,
+        triangles: trial.triangles as u64,
+        counts: ["silhouette texels", "silhouette pixels", "visibility evaluations"].map(|stat| counts.count(stat)),
+        stages: STAGES.map(|of| run.cost.ms_of(|pass| of.contains(&pass.name.as_str())).unwrap_or(0.0)),
+        ms: run.ms(),
+        over_exact: text::ratio(trial.run(EXACT).map_or(f64::NAN, |exact| exact.speed_over(run))),
+    });
+    let paper = row_of(trial).map(|row| Line {
+        scene: format!("{} (paper)", row.name),
+        samples: row.samples,
+        triangles: row.triangles,
+        counts: [row.texels, row.pixels, row.evaluations].map(text::count),
+        stages: row.ms,
+        ms: text::ms(1000.0 / row.fps),
+        over_exact: text::DASH.to_owned(),
+    });
+    ours.into_iter().chain(paper)
 }
 
 /// Table 1.
 pub fn section(trials: &[Trial]) -> Section {
-    use Line::{Ours, Paper};
     let columns = [
-        column("scene", "Ours, and the paper's of the same class", "", |line: &Line| match line {
-            Ours { trial, .. } => trial.scene.clone(),
-            Paper(row) => format!("{} (paper)", row.name),
-        }),
-        column("samples", "Samples per pixel", "", |line: &Line| match line {
-            Ours { samples, .. } => samples.to_string(),
-            Paper(row) => row.samples.to_string(),
-        }),
-        column("triangles", "Triangles", "", |line: &Line| match line {
-            Ours { trial, .. } => text::count(trial.triangles as u64),
-            Paper(row) => text::count(row.triangles),
-        }),
-        column("texels", "Silhouette texels of the 512 x 512 map", "", |l: &Line| {
-            l.count("silhouette texels", |row| row.texels)
-        }),
-        column("pixels", "Silhouette pixels", "", |l: &Line| l.count("silhouette pixels", |row| row.pixels)),
-        column("tests", "Visibility evaluations: tests of a triangle against a pixel", "", |l: &Line| {
-            l.count("visibility evaluations", |row| row.evaluations)
-        }),
-        column("mask", "Depth map and silhouette mask, by timestamps", "ms", |l: &Line| l.stage(0)),
-        column("pairs", "Facets, lists and pairs, by timestamps", "ms", |l: &Line| l.stage(1)),
-        column("shadow", "Tests and filter, by timestamps", "ms", |l: &Line| l.stage(2)),
-        column(
-            "ms",
-            "The shadow in total; the paper's from its frames per second, the whole image",
-            "ms",
-            |l: &Line| match l {
-                Ours { run, .. } => run.ms(),
-                Paper(row) => text::ms(1000.0 / row.fps),
-            },
-        ),
-        column("÷ exact", "Over alias-free at one sample", "", |line: &Line| match line {
-            Ours { trial, run, .. } => text::ratio(trial.run(EXACT).map_or(f64::NAN, |exact| exact.speed_over(run))),
-            Paper(_) => text::DASH.to_owned(),
-        }),
+        column("scene", "Ours, and the paper's of the same class", "", |l: &Line| l.scene.clone()),
+        column("samples", "Samples per pixel", "", |l: &Line| l.samples.to_string()),
+        column("triangles", "Triangles", "", |l: &Line| text::count(l.triangles)),
+        column("texels", "Silhouette texels of the 512 x 512 map", "", |l: &Line| l.counts[0].clone()),
+        column("pixels", "Silhouette pixels", "", |l: &Line| l.counts[1].clone()),
+        column("tests", "Tests of a triangle against a pixel", "", |l: &Line| l.counts[2].clone()),
+        column("mask", "Depth map and silhouette mask, by timestamps", "ms", |l: &Line| text::ms(l.stages[0])),
+        column("pairs", "Facets, lists and pairs, by timestamps", "ms", |l: &Line| text::ms(l.stages[1])),
+        column("shadow", "Tests and filter, by timestamps", "ms", |l: &Line| text::ms(l.stages[2])),
+        column("ms", "The whole shadow; the paper's whole frame", "ms", |l: &Line| l.ms.clone()),
+        column("÷ exact", "Over alias-free at one sample", "", |l: &Line| l.over_exact.clone()),
     ];
     let title = |trial: &Trial| {
         let class = row_of(trial).map_or("further", |r| r.class);
         format!("{class}: {}", trial.description())
     };
-    let table = Table::grouped(&columns, trials.iter().map(|trial| (title(trial), Line::of(trial))));
+    let table = Table::grouped(&columns, trials.iter().map(|trial| (title(trial), lines(trial))));
     Section::new(
         "Seven scenes (table 1)",
         "Maps of 512 x 512 texels, the paper's images of 800 x 600 pixels unless --size says otherwise; a point light. \

@@ -7,7 +7,7 @@ mod figures;
 mod tables;
 
 use crate::Error;
-use crate::kit::{Experiment, Report, Runner, Suite, Trial, split};
+use crate::kit::{Report, Runner, Suite, Trial, split};
 
 pub const SUITE: Suite = Suite {
     name: "vsm",
@@ -20,9 +20,8 @@ pub const SUITE: Suite = Suite {
 
 fn run(runner: &Runner) -> Result<Report, Error> {
     let groups = [tables::experiments(runner)?, figures::experiments(runner)?, family::experiments(runner)?];
-    let counts = groups.each_ref().map(Vec::len);
-    let experiments: Vec<Experiment> = groups.into_iter().flatten().collect();
-    Ok(report(runner.run_all(&experiments)?, counts))
+    let (trials, counts) = runner.run_groups(groups)?;
+    Ok(report(trials, counts))
 }
 
 /// The report on the trials, in the order of the experiments.
