@@ -31,7 +31,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     // TODO(convert) entry::<backprojection::packet::Packet>(),
     // TODO(convert) entry::<pvssm::Pvssm>(),
     // TODO(convert) entry::<pvssm::fvsm::Fvsm>(),
-    // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),
+    entry::<alias_free::subpixel::Subpixel>(),
     // TODO(convert) entry::<light_sampling::uniform::UniformSampling>(),
     // TODO(convert) entry::<light_sampling::adaptive::AdaptiveSampling>(),
     entry::<alias_free::hard::AliasFree>(),

@@ -2,4 +2,4 @@
 
 pub mod hard;
 // TODO(convert) pub mod soft;
-// TODO(convert) pub mod subpixel;
+pub mod subpixel;
