@@ -19,9 +19,6 @@ fn main() {
             continue;
         }
         let module = parts.iter().filter(|p| **p != "mod").map(|p| format!("{p}::")).collect::<String>();
-        if is_disabled(&root, &parts) {
-            continue; // TODO(convert)
-        }
         for name in host_structs(&fs::read_to_string(file).expect("sources are UTF-8")) {
             writeln!(structs, "    <crate::{module}{name} as crate::gpu::host_struct::HostStruct>::wgsl,").unwrap();
         }
@@ -47,14 +44,4 @@ fn collect(folder: &Path, files: &mut Vec<std::path::PathBuf>) {
 fn host_structs(source: &str) -> Vec<&str> {
     let declarations = source.split("\ngpu_struct! {").skip(1);
     declarations.filter_map(|d| d.split_once(" struct ")?.1.split([' ', '{']).next()).collect()
-}
-
-// TODO(convert)
-fn is_disabled(root: &Path, parts: &[&str]) -> bool {
-    (0..parts.len()).any(|i| {
-        let folder = parts[..i].iter().fold(root.to_path_buf(), |p, s| p.join(s));
-        let text = fs::read_to_string(folder.join("mod.rs")).unwrap_or_default();
-        text.contains(&format!("// TODO(convert) pub mod {};", parts[i]))
-            || text.contains(&format!("// TODO(convert) mod {};", parts[i]))
-    })
 }

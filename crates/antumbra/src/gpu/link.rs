@@ -103,11 +103,10 @@ fn known_names(modules: &[ModulePath], map: &BasicSourceMap) -> Vec<String> {
 
 /// The name in a line that declares a resource: such declarations start a line, after `@if` at most.
 fn resource_of_line(line: &str) -> Option<&str> {
-    let declaration = match line.strip_prefix("@if(") {
-        Some(rest) => rest.split_once(") ")?.1,
-        None => line,
+    let rest = match line.strip_prefix("@if(") {
+        Some(condition) => condition.split_once(") var")?.1,
+        None => line.strip_prefix("var")?,
     };
-    let rest = declaration.strip_prefix("var")?;
     let name = match rest.strip_prefix('<') {
         Some(rest) => rest.split_once("> ")?.1,
         None => rest.strip_prefix(' ')?,

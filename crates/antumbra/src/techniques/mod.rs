@@ -31,7 +31,7 @@ pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<backprojection::packet::Packet>(),
     entry::<pvssm::Pvssm>(),
     entry::<pvssm::Fvsm>(),
-    // TODO(convert) entry::<alias_free::subpixel::Subpixel>(),
+    entry::<alias_free::subpixel::Subpixel>(),
     entry::<light_sampling::uniform::UniformSampling>(),
     entry::<light_sampling::adaptive::AdaptiveSampling>(),
     entry::<alias_free::hard::AliasFree>(),

@@ -1,7 +1,7 @@
 //! Passes over the casters' triangles: culling, shared edges, silhouettes, light-space triangles and their texels.
 
-// TODO(convert) pub mod adjacency;
+pub mod adjacency;
 pub mod culling;
 pub mod light_triangles;
-// TODO(convert) pub mod silhouette;
+pub mod silhouette;
 pub mod triangle_pairs;

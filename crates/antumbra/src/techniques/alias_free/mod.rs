@@ -2,4 +2,4 @@
 
 pub mod hard;
 pub mod soft;
-// TODO(convert) pub mod subpixel;
+pub mod subpixel;

@@ -1,147 +1,121 @@
-//! The texels of a map from the light's centre that a shadow's boundary may pass [Pan 2009, section 3.2].
+//! The texels of a map from the light's centre that the boundary of a shadow may cross [Pan 2009, section 3.2].
 
-use crate::input::casters::BatchLayout;
-use crate::input::frame::{Frame, FrameUniform, light_from_world};
-use crate::passes::triangles::culling::Culling;
-use crate::passes::maps::depth_map::DepthMap;
-use crate::passes::maps::summed_area::SummedArea;
-use crate::gpu::recorder::Recorder;
-use crate::gpu::resources::{storage_buffer, uniform};
-use crate::gpu::shader::{HostStruct, ShaderKey};
-use crate::technique::{InnerContent, InnerPicture, Memory};
 use crate::error::Error;
+use crate::gpu::debug_view::DebugLayout;
 use crate::gpu::device::Gpu;
-use crate::{bindings, gpu_struct};
+use crate::gpu::readback::read_buffer;
+use crate::gpu::recorder::{Recorder, Work};
+use crate::gpu::resources::BufferDescription;
+use crate::gpu::shader::ShaderKey;
+use crate::gpu::texture::{Texture, TextureDescription};
+use crate::input::frame::{Frame, light_from_world};
+use crate::passes::maps::depth_map::DepthMap;
+use crate::passes::triangles::adjacency::edge_rings;
+use crate::passes::triangles::culling::Culling;
+use crate::{binding_array, bindings, gpu_struct};
 use glam::Mat4;
 
 gpu_struct! {
-    /// How silhouettes are looked for.
+    /// The mask and the light.
     pub(crate) struct SilhouetteUniform {
         light_from_world: Mat4,
-        /// Texels a side.
+        /// Texels per side.
         size: u32,
-        /// Words of 32 texels a row.
+        /// Words of 32 texels per row.
         row: u32,
-        /// 1 if edges behind what the depth map holds are left out.
+        /// 1 if edges behind the depth map are left out.
         hide: u32,
     }
 }
 
-/// A bit for each texel, set where a silhouette edge passes or a surface with holes lies, and the number of set bits in
-/// any rectangle.
+/// A bit per texel, set where a silhouette edge passes or a surface with holes lies, and the number of set bits in any
+/// rectangle.
 pub struct SilhouetteMask {
-    /// A bit a texel: word `y row + x / 32`, bit `x % 32`.
+    /// Word `y row + x / 32`, bit `x % 32`.
     pub texels: wgpu::Buffer,
-    /// How many are set before each texel: [`SummedArea`] of counts.
-    pub counts: SummedArea,
-    /// Silhouette edges and texels of the last frame, if it was told to count.
-    counters: wgpu::Buffer,
-    uniform: wgpu::Buffer,
-    size: u32,
+    /// The summed-area table of the bits; see `shaders/mask_counts.wesl`.
+    pub counts: Texture,
+    /// The number of silhouette edges, if they are counted.
+    edges: Option<wgpu::Buffer>,
 }
 
-/// How a mask is made.
+/// Options of a mask.
 #[derive(Clone, Copy, Debug)]
 pub struct Marking {
-    /// Leaves out what lies behind the depth map around it.
+    /// Leaves out texels that lie behind the depth map all around.
     pub hide: bool,
     /// Counts edges, for tests and reports.
     pub count: bool,
 }
 
 impl SilhouetteMask {
-    /// An empty mask of `size` texels a side.
-    pub fn new(gpu: &Gpu, size: u32) -> Result<SilhouetteMask, Error> {
-        let row = size.div_ceil(32);
-        let empty = SilhouetteUniform { light_from_world: Mat4::IDENTITY, size, row, hide: 0 };
-        Ok(SilhouetteMask {
-            texels: storage_buffer(gpu, "silhouette mask", u64::from(row * size) * 4),
-            counts: SummedArea::of_mask(gpu, size)?,
-            counters: storage_buffer(gpu, "silhouette edges", 16),
-            uniform: uniform(gpu, "silhouettes", &empty),
-            size,
-        })
-    }
-
-    /// Makes a mask in `slot` unless one of this size is there.
-    pub fn ensure<'a>(slot: &'a mut Option<SilhouetteMask>, gpu: &Gpu, size: u32) -> Result<&'a SilhouetteMask, Error> {
-        if slot.as_ref().is_none_or(|m| m.size != size) {
-            *slot = Some(SilhouetteMask::new(gpu, size)?);
-        }
-        Ok(slot.as_ref().expect("just made"))
-    }
-
-    /// Marks the texels that the silhouettes of what `map` holds pass, and counts them over all rectangles. `map` has
-    /// been drawn from the light's centre and is of the mask's size.
+    /// Marks the texels that the silhouettes of the clusters in `map` pass. `map` is drawn from the light's centre; the
+    /// mask has its size.
     pub fn record(
-        &self,
         recorder: &mut Recorder,
         frame: &Frame,
         map: &DepthMap,
         marking: Marking,
-    ) -> Result<(), Error> {
-        let adjacency = frame.casters.adjacency(recorder.gpu)?;
-        let value = SilhouetteUniform {
-            light_from_world: light_from_world(&frame.light).as_mat4(),
-            size: self.size,
-            row: self.size.div_ceil(32),
-            hide: u32::from(marking.hide),
+    ) -> Result<SilhouetteMask, Error> {
+        let rings = edge_rings(recorder.gpu, &frame.casters)?;
+        let key = ShaderKey::new("passes::triangles::silhouette::mark").feature("counted", marking.count);
+        let unmasked = recorder.gpu.compute_pipeline(&key, "mark")?;
+        let masked = recorder.gpu.compute_pipeline(&key.feature("masked", true), "mark")?;
+        let (size, row) = (map.size, map.size.div_ceil(32));
+        let light_from_world = light_from_world(&frame.light).as_mat4();
+        let uniform = SilhouetteUniform { light_from_world, size, row, hide: u32::from(marking.hide) };
+        let uniform = recorder.uniform("silhouettes", &uniform);
+        let help = "texels of the map from the light's centre that a silhouette or a surface with holes crosses";
+        let texels = BufferDescription::new(4 * u64::from(row) * u64::from(size));
+        let texels = texels.cleared().debug(help, DebugLayout::Mask { side: size });
+        let texels = recorder.buffer("silhouette mask", texels);
+        let edges = BufferDescription::new(4).cleared();
+        let edges = marking.count.then(|| recorder.buffer("silhouette edges", edges));
+        let own = bindings! {
+            depth_map: &map.texture,
+            silhouette: &uniform,
+            visible: &map.culling.visible,
+            marks: &texels,
         };
-        recorder.gpu.queue.write_buffer(&self.uniform, 0, &value.uniform_bytes());
-        recorder.encoder.clear_buffer(&self.texels, 0, None);
-        recorder.encoder.clear_buffer(&self.counters, 0, None);
-        let key = ShaderKey::new("passes::triangles::silhouette::mark")
-            .feature("counted", marking.count);
-        let edges = recorder.gpu.compute_pipeline(&key, "mark")?;
-        let surfaces = recorder.gpu.compute_pipeline(&key.feature("masked", true), "mark")?;
-        let culling = map.culling();
-        recorder.compute_pass("silhouette mask", |gpu, pass| {
-            for (i, batch) in frame.casters.batches.iter().enumerate().filter(|(_, b)| b.cluster_count > 0) {
-                let pipeline = if batch.masked { &surfaces } else { &edges };
-                let draw = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                    buffer: &culling.draws,
-                    offset: Culling::draw_offset(i),
-                    size: std::num::NonZero::new(32),
-                });
-                let set = frame.bindings(bindings! {
-                    depth_map: &map.texture,
-                    silhouette: &self.uniform,
-                    ring: &adjacency.rings[i],
-                    visible: &culling.visible,
-                    draw: &draw,
-                    marks: &self.texels,
-                    silhouette_edges: &self.counters,
-                });
-                pass.set_pipeline(&pipeline.pipeline);
-                pass.set_bind_group(0, &pipeline.bind_group(gpu, 0, &set), &[]);
-                pass.set_bind_group(1, &pipeline.bind_group(gpu, 1, &batch.bindings(&frame.casters)), &[]);
-                let side = batch.cluster_count.min(1 << 15);
-                pass.dispatch_workgroups(side, batch.cluster_count.div_ceil(side), 1);
-            }
-        });
-        self.counts.record_counts(recorder, "silhouette mask", &self.texels)
+        let counted = edges.as_ref().map(|edges| binding_array! { silhouette_edges: edges });
+        let counted = counted.as_ref().map(|set| &set[..]).unwrap_or_default();
+        for (i, batch) in frame.casters.batches.iter().enumerate().filter(|(_, b)| b.cluster_count > 0) {
+            let pipeline = if batch.masked { &masked } else { &unmasked };
+            let draw = wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &map.culling.draws,
+                offset: Culling::draw_offset(i),
+                size: std::num::NonZero::new(32),
+            });
+            let of_batch = bindings! { draw: &draw, ring: &rings[i] };
+            let set: [&[_]; 5] = [&frame.bindings(), own, counted, of_batch, &batch.bindings(&frame.casters)];
+            recorder.compute("silhouette mask", pipeline, &set, Work::groups(batch.cluster_count))?;
+        }
+        let counts = count_bits(recorder, "silhouette mask", &texels, size)?;
+        Ok(SilhouetteMask { texels, counts, edges })
     }
 
-    /// Silhouette edges, if they were counted, and silhouette texels of the last frame. Waits for the GPU: for tests and
+    /// The numbers of silhouette edges, if they were counted, and of silhouette texels. Waits for the GPU: for tests and
     /// reports.
     pub async fn stats(&self, gpu: &Gpu) -> Result<[u64; 2], Error> {
-        let words = |bytes: Vec<u8>| -> Vec<u32> { bytemuck::pod_collect_to_vec(&bytes) };
-        let edges = words(crate::gpu::resources::read_buffer(gpu, &self.counters).await?)[0];
-        let texels = words(crate::gpu::resources::read_buffer(gpu, &self.texels).await?);
-        Ok([u64::from(edges), texels.iter().map(|w| u64::from(w.count_ones())).sum()])
-    }
-
-    /// For looking at.
-    pub fn inner_picture(&self) -> InnerPicture {
-        InnerPicture {
-            name: "silhouette mask",
-            help: "texels of the map from the light's centre that a silhouette passes, or a surface with holes",
-            content: InnerContent::Mask { bits: self.texels.clone(), side: self.size },
+        let mut edges = 0;
+        if let Some(buffer) = &self.edges {
+            edges = u64::from(bytemuck::pod_read_unaligned::<u32>(&read_buffer(gpu, buffer).await?[..4]));
         }
+        let texels = read_buffer(gpu, &self.texels).await?;
+        Ok([edges, texels.iter().map(|byte| u64::from(byte.count_ones())).sum()])
     }
+}
 
-    /// GPU memory by pass.
-    pub fn memory(&self) -> Memory {
-        Memory::new("silhouette mask", self.texels.size() + self.counters.size() + self.counts.memory().bytes)
-    }
+/// The summed-area table of a mask's bits.
+fn count_bits(recorder: &mut Recorder, label: &'static str, mask: &wgpu::Buffer, size: u32) -> Result<Texture, Error> {
+    let key = ShaderKey::new("passes::maps::summed_area::prefix").feature("counts", true);
+    let along_rows = recorder.gpu.compute_pipeline(&key, "sum_lines")?;
+    let down_columns = recorder.gpu.compute_pipeline(&key.feature("columns", true), "sum_lines")?;
+    let description = |help| TextureDescription::new([size; 2], wgpu::TextureFormat::R32Uint, help).layers(1);
+    let rows = recorder.texture("row sums", description("set bits to the left"));
+    let sums = recorder.texture("summed-area table", description("set bits to the left and above"));
+    let groups = || Work::Groups([size.div_ceil(8), 1, 1]);
+    recorder.compute(label, &along_rows, &[bindings! { mask: mask, summed: &rows }], groups())?;
+    recorder.compute(label, &down_columns, &[bindings! { row_sums: &rows, summed: &sums }], groups())?;
+    Ok(sums)
 }

@@ -1,12 +1,12 @@
-//! The table of half-planes: for each line through a pixel which samples lie on its side [Pan 2009, section 3.4;
-//! Eisemann, Décoret 2007].
+//! The table of half-planes: for each line through a pixel the samples on its side [Pan 2009, section 3.4; Eisemann, Décoret
+//! 2007].
 
 use super::pattern::Pattern;
 use crate::gpu::device::Gpu;
-use crate::gpu::texture::Texture;
+use crate::gpu::texture::{Texture, TextureDescription};
 use glam::{DVec2, DVec3};
 
-/// Directions in a half turn, and distances, that the table tells apart.
+/// Number of directions in a half turn, and of distances.
 pub const STEPS: u32 = 256;
 
 /// The samples of a pixel, a bit each, as the shader packs them.
@@ -23,16 +23,16 @@ pub fn exact(pattern: &Pattern, h: DVec3) -> Samples {
     pattern.samples().iter().enumerate().fold(0, |bits, (i, s)| bits | Samples::from(inside(s)) << i)
 }
 
-/// The half-plane in the middle of an entry of the table. Lines are told by h / (|h.x| + |h.y|) with h.x >= 0: the
-/// column says h.y, from -1 to 1, the row h.z, from -1/2 to 1/2, beyond which no line meets the pixel. Half-planes with
-/// h.x < 0 are the complements of these, so that what two of them share a line with is parted without a gap.
+/// The half-plane in the middle of an entry of the table. A line is h / (|h.x| + |h.y|) with h.x >= 0: columns are h.y from
+/// -1 to 1, rows h.z from -1/2 to 1/2, beyond which no line crosses the pixel. Half-planes with h.x < 0 are the complements,
+/// so that the two sides of a line leave no gap.
 pub fn entry(column: u32, row: u32) -> DVec3 {
     let at = |k: u32| (f64::from(k) + 0.5) / f64::from(STEPS);
     let y = 2.0 * at(column) - 1.0;
     DVec3::new(1.0 - y.abs(), y, at(row) - 0.5)
 }
 
-/// The table of a pattern: `STEPS` x `STEPS` texels of one word a 32 samples.
+/// The table of a pattern: `STEPS` x `STEPS` texels of one word per 32 samples.
 pub fn table(gpu: &Gpu, pattern: &Pattern) -> Texture {
     let words = pattern.words();
     let format = match words {
@@ -47,8 +47,8 @@ pub fn table(gpu: &Gpu, pattern: &Pattern) -> Texture {
             (0..words).map(move |w| (samples >> (32 * w)) as u32)
         })
         .collect();
-    let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-    let texture = Texture::new(gpu, "table of half-planes", [STEPS; 2], 1, format, usage);
+    let description = TextureDescription::new([STEPS; 2], format, "samples on the side of each line");
+    let texture = Texture::new(gpu, "table of half-planes", description.usage(wgpu::TextureUsages::COPY_DST));
     let row = STEPS * words as u32 * 4;
     let layout = wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(row), rows_per_image: None };
     let size = texture.texture.size();

@@ -1,17 +1,17 @@
-//! Where the samples of a pixel lie: any pattern that has one sample in the pixel's middle [Pan 2009, section 3.4].
+//! Positions of the samples of a pixel: any pattern with one sample in the pixel's middle [Pan 2009, section 3.4].
 
 use crate::error::Error;
 use glam::DVec2;
 
-/// Most samples a pixel has.
+/// Most samples per pixel.
 pub const MOST_SAMPLES: usize = 128;
 
 crate::choices! {
-    /// A pattern that is made by formula.
+    /// A pattern by formula.
     pub enum Arrangement {
-        /// The lattice whose samples keep the largest distance from each other: a rotated grid.
+        /// The lattice with the largest distance between samples: a rotated grid.
         Rotated = "rotated",
-        /// Rows and columns, moved so that one sample is in the middle.
+        /// Rows and columns, shifted so that one sample is in the middle.
         Grid = "grid",
     }
 }
@@ -21,7 +21,7 @@ crate::choices! {
 pub struct Pattern(Vec<DVec2>);
 
 impl Pattern {
-    /// `count` samples by formula. They repeat from pixel to pixel, so that the picture is sampled evenly.
+    /// `count` samples by formula. They repeat from pixel to pixel, so that the image is sampled evenly.
     pub fn arranged(arrangement: Arrangement, count: u32) -> Pattern {
         let n = count.clamp(1, MOST_SAMPLES as u32);
         let points = match arrangement {
@@ -37,7 +37,7 @@ impl Pattern {
         Pattern(points)
     }
 
-    /// A pattern of one's own, in parts of a pixel from its upper left corner. An error says what is wrong with it.
+    /// A custom pattern, in fractions of a pixel from its upper left corner. Errors name the sample and its fault.
     pub fn of_points(points: &[[f32; 2]]) -> Result<Pattern, Error> {
         let refused = |message: String| Err(Error::Pattern { message });
         if points.is_empty() || points.len() > MOST_SAMPLES {
@@ -62,13 +62,13 @@ impl Pattern {
         &self.0
     }
 
-    /// Words of 32 bits that hold one bit a sample: 1, 2 or 4.
+    /// Words of 32 bits for one bit per sample: 1, 2 or 4.
     pub fn words(&self) -> usize {
         self.0.len().div_ceil(32).next_power_of_two()
     }
 }
 
-/// From [0, 1) to the same place of a pixel whose middle is 0.
+/// From [0, 1) to the same position of a pixel whose middle is 0.
 fn wrapped(v: f64) -> f64 {
     let v = v.fract();
     if v < 0.5 { v } else { v - 1.0 }
@@ -80,7 +80,7 @@ fn lattice(n: u32, generator: u32) -> Vec<DVec2> {
     (0..n).map(|i| DVec2::new(at(i), at(i * generator))).collect()
 }
 
-/// The generator whose lattice keeps the largest distance between samples, also across the pixel's rim.
+/// The generator whose lattice has the largest distance between samples, also across the pixel's border.
 fn best_generator(n: u32) -> u32 {
     let closest = |g: u32| {
         let points = lattice(n, g);

@@ -5,15 +5,12 @@ mod known_masks;
 mod silhouettes;
 
 use super::half_planes::{self, Samples, table};
+use super::key_for;
 use super::pattern::{Arrangement, Pattern};
-use super::{SamplingUniform, key_for};
 use crate::bindings;
-use crate::input::frame::FrameUniform;
-use crate::gpu::resources::uniform;
 use crate::gpu::shader::ShaderKey;
-use crate::testing::evaluate_on;
-use crate::testing::gpu;
-use glam::{DVec2, DVec3, UVec4, Vec3};
+use crate::testing::{evaluate_on, gpu};
+use glam::{DVec2, DVec3, Vec3};
 
 /// Reproducible numbers.
 struct Random(u64);
@@ -45,10 +42,8 @@ fn masks_on_gpu(pattern: &Pattern, text: &str, input: &[f32], stride: usize) -> 
             }}
         }}"
     );
-    let key = key_for(ShaderKey::new("host"), pattern);
-    let all = half_planes::all(pattern);
-    let samples = UVec4::from([0, 1, 2, 3].map(|k| (all >> (32 * k)) as u32));
-    let sampling = uniform(gpu, "sampling", &SamplingUniform { samples });
+    let key = key_for(ShaderKey::default(), pattern);
+    let sampling = super::sampling(gpu, pattern);
     let planes = table(gpu, pattern);
     let more = bindings! { sampling: &sampling, half_planes: &planes };
     let mask = |w: &[u32]| w.iter().rev().fold(0, |bits, word| bits << 32 | Samples::from(*word));

@@ -1,12 +1,12 @@
 //! Silhouette edges and the texels that they pass.
 
 use super::*;
+use crate::gpu::readback::read_buffer;
+use crate::input::frame::Frame;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::passes::triangles::silhouette::{Marking, SilhouetteMask};
-use crate::gpu::resources::read_buffer;
 use crate::scene::SceneRenderer;
-use crate::input::frame::Frame;
-use crate::gpu::recorder::Recorder;
+use crate::testing::submit;
 use antumbra_scene::{Camera, Instance, Material, Mesh, RectLight, Scene};
 use glam::{Affine3A, Vec2};
 use pollster::block_on;
@@ -70,16 +70,16 @@ struct Marked {
 fn marked(scene: &Scene, size: u32, hide: bool) -> (Marked, Frame) {
     let gpu = gpu();
     let renderer = SceneRenderer::new(gpu, scene, [16, 16]).expect("uploads");
-    let mut slot = None;
-    let mask = SilhouetteMask::new(gpu, size).expect("fits");
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let mut recorder = Recorder::new(gpu, &mut encoder);
-    let map = DepthMap::of_light(&mut slot, &mut recorder, &renderer.frame, size).expect("draws");
-    mask.record(&mut recorder, &renderer.frame, map, Marking { hide, count: true }).expect("records");
-    gpu.queue.submit([encoder.finish()]);
+    let mut mask = None;
+    submit(|recorder| {
+        let map = DepthMap::of_light(recorder, &renderer.frame, size)?;
+        mask = Some(SilhouetteMask::record(recorder, &renderer.frame, &map, Marking { hide, count: true })?);
+        Ok(())
+    });
+    let mask = mask.expect("recorded");
     let [edges, _] = block_on(mask.stats(gpu)).expect("reads");
     let texels = bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, &mask.texels)).expect("reads"));
-    let counts = bytemuck::pod_collect_to_vec(&block_on(gpu.read_texture(&mask.counts.texture)).expect("reads"));
+    let counts = bytemuck::pod_collect_to_vec(&block_on(gpu.read_texture(&mask.counts)).expect("reads"));
     (Marked { edges, texels, counts, size }, renderer.frame)
 }
 
