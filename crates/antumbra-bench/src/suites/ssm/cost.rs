@@ -145,15 +145,16 @@ fn lights(runner: &Runner, occluder: &Occluder) -> Result<Section, Error> {
         }
     }
     let plot = |y: &str, value: fn(&Sample) -> f64| -> Content {
-        let curve = |(i, (samples, (map, levels))): (usize, (&Vec<(f64, Sample)>, &(u32, bool)))| {
+        let curve = |i: usize| {
+            let (map, levels) = variants[i];
             let point = |(x, s): &(f64, Sample)| {
                 Point::new(*x, value(s), format!("{}, light {x}: {}", s.spec, text::metric(value(s))))
             };
-            let label = format!("{map} x {map}, {}", if *levels { "levels" } else { "flat" });
-            Curve::new(label, i / 2, samples.iter().map(point)).dashed(*levels)
+            let label = format!("{map} x {map}, {}", if levels { "levels" } else { "flat" });
+            Curve::new(label, i / 2, samples[i].iter().map(point)).dashed(levels)
         };
         let x = "edge of the light; the scene is 1 wide, the occluder 0.2";
-        Lines::new(x, y, samples.iter().zip(&variants).enumerate().map(curve)).into()
+        Lines::new(x, y, (0..variants.len()).map(curve)).into()
     };
     Ok(Section::new(
         "Milliseconds and error over the light's size (figure 24)",
