@@ -53,7 +53,7 @@ pub(super) fn link(key: &ShaderKey) -> Result<Linked, ShaderError> {
         wesl.compile(&module_path(&format!("package::{}", key.module))).map_err(|e| error(e.to_string()))?;
     let map = linked.sourcemap.take().unwrap_or_default();
     let slots = assign_bindings(&mut linked.syntax, &map, key.module).map_err(error)?;
-    let known_names = known_names(&linked.modules, &map);
+    let known_names = known_names(key);
     Ok(Linked { wgsl: linked.syntax.to_string(), slots, known_names, map })
 }
 
@@ -94,11 +94,34 @@ fn is_resource(declaration: &Declaration) -> bool {
     }
 }
 
-/// Names of the resources that these modules declare under any feature.
-fn known_names(modules: &[ModulePath], map: &BasicSourceMap) -> Vec<String> {
-    let sources = modules.iter().filter_map(|path| map.get_source(path));
-    let names: BTreeSet<&str> = sources.flat_map(|text| text.lines().filter_map(resource_of_line)).collect();
+/// Names of the resources that a module and its imports declare under any feature, sorted.
+fn known_names(key: &ShaderKey) -> Vec<String> {
+    let source_of = |module: &str| {
+        let stands_in = key.parts.iter().find(|(name, _)| *name == module).map_or(module, |(_, part)| part);
+        let known = SOURCES.iter().find(|(path, _)| path.strip_prefix("package::") == Some(stands_in));
+        key.source.as_deref().filter(|_| module == key.module).or(known.map(|(_, text)| *text))
+    };
+    let (mut names, mut seen, mut open) = (BTreeSet::new(), BTreeSet::new(), vec![key.module.to_owned()]);
+    while let Some(module) = open.pop() {
+        let Some(text) = source_of(&module).filter(|_| seen.insert(module.clone())) else { continue };
+        // Kernels of tests are indented.
+        let line = |line| if key.source.is_some() { str::trim_start(line) } else { line };
+        names.extend(text.lines().filter_map(|text| resource_of_line(line(text))));
+        open.extend(text.split("import ").skip(1).flat_map(|rest| imported_modules(&module, rest)));
+    }
     names.into_iter().map(str::to_owned).collect()
+}
+
+/// The modules that an import statement may name: its path up to the braces, with and without the last word.
+fn imported_modules(importer: &str, statement: &str) -> [String; 2] {
+    let path = statement.split([';', '{']).next().unwrap_or_default().trim().trim_end_matches("::");
+    let parent = importer.rsplit_once("::").map_or("", |(parent, _)| parent);
+    let whole = match path.strip_prefix("super::") {
+        Some(rest) => format!("{parent}::{rest}"),
+        None => path.strip_prefix("package::").unwrap_or(path).to_owned(),
+    };
+    let module = whole.rsplit_once("::").map_or(whole.as_str(), |(module, _)| module).to_owned();
+    [whole, module]
 }
 
 /// The name in a line that declares a resource: such declarations start a line, after `@if` at most.

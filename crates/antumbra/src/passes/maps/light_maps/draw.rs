@@ -155,9 +155,9 @@ impl LightMaps {
             map_stage: stage_binding,
             light_samples: &self.samples,
             map_slots: slots,
-            visible: &self.visible,
         };
-        self.cull(recorder, casters, stage, set)?;
+        let visible = bindings! { visible: &self.visible };
+        self.cull(recorder, casters, stage, &[set, visible])?;
         let layers = self.layout.per_group;
         let target = RenderTarget { depth: Some(wgpu::CompareFunction::Greater), layers, ..RenderTarget::default() };
         let key = ShaderKey::new("passes::maps::light_maps::draw").feature("layered", layers > 1);
@@ -176,7 +176,7 @@ impl LightMaps {
                 draw.pass.draw(0..3, 0..1);
                 for (i, batch) in casters.batches.iter().enumerate() {
                     let pipeline = if batch.masked { &masked } else { &opaque };
-                    draw.bind(pipeline, &[set, group_set, &batch.bindings(casters)])?;
+                    draw.bind(pipeline, &[set, visible, group_set, &batch.bindings(casters)])?;
                     let index = u64::from(group * self.layout.batch_count + i as u32);
                     draw.pass.draw_indirect(&self.draws, index * DRAW_BYTES);
                 }
@@ -187,14 +187,15 @@ impl LightMaps {
     }
 
     /// Lists the clusters that any map of a group touches, for every group of the stage.
-    fn cull(&self, recorder: &mut Recorder, casters: &Casters, stage: &MapStage, set: &[Binding]) -> Result<(), Error> {
+    fn cull(&self, recorder: &mut Recorder, casters: &Casters, stage: &MapStage, [set, visible]: &[&[Binding]; 2],
+    ) -> Result<(), Error> {
         let key = ShaderKey::new("passes::maps::light_maps::culling");
         let cull = recorder.gpu.compute_pipeline(&key, "cull_for_light_maps")?;
         recorder.clear(&self.draws, None);
         let more = bindings! { boxes: &casters.cluster_bounds, draws: &self.draws };
         for batch in casters.batches.iter().filter(|b| b.cluster_count > 0) {
             let work = Work::Groups([batch.cluster_count.div_ceil(64).min(1 << 15), stage.group_count, 1]);
-            recorder.compute("cluster culling", &cull, &[set, more, &batch.bindings(casters)], work)?;
+            recorder.compute("cluster culling", &cull, &[set, visible, more, &batch.bindings(casters)], work)?;
         }
         Ok(())
     }
