@@ -174,7 +174,8 @@ pub(crate) fn predict(
     let help = "resolution that each cell of the window needs, as texels over the whole window: along x, along y";
     let layout = DebugLayout::Numbers { stride: 2, channels: 2, size: [side; 2], list: None };
     let grid = recorder.buffer("tile grid", BufferDescription::new(8 * nodes).cleared().debug(help, layout));
-    let pipeline = recorder.gpu.compute_pipeline(&ShaderKey::new("techniques::pvssm::predict"), "predict_resolution")?;
+    let pipeline =
+        recorder.gpu.compute_pipeline(&ShaderKey::new("techniques::pvssm::predict"), "predict_resolution")?;
     let own = bindings! { pvssm: uniform, grid_nodes: &grid };
     let set = [&frame.bindings()[..], &analysis.bindings(), own];
     recorder.compute("tile grid", &pipeline, &set, Work::Indirect(&analysis.list.tiles, 0))?;

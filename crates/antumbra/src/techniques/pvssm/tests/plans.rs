@@ -42,7 +42,8 @@ fn check(decided: &Decided, cells: &[Vec2], settings: &PvssmSettings) {
         assert!(tile.texels.cmpgt(UVec2::ZERO).all() && tile.texels.max_element() <= settings.tile, "{tile:?}");
         assert!((tile.position + tile.texels).max_element() <= settings.tile, "beyond the pool: {tile:?}");
         for other in decided.tiles[..i].iter().filter(|t| t.round == tile.round) {
-            let apart = (tile.position + tile.texels).cmple(other.position) | (other.position + other.texels).cmple(tile.position);
+            let apart = (tile.position + tile.texels).cmple(other.position)
+                | (other.position + other.texels).cmple(tile.position);
             assert!(apart.any(), "{tile:?} and {other:?} share texels");
         }
         for cell in (y..y + height).flat_map(|row| (x..x + width).map(move |column| (row * side + column) as usize)) {
