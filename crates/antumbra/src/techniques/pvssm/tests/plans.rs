@@ -106,7 +106,7 @@ fn an_empty_grid_has_no_tile_and_one_cell_has_one() {
 
 #[test]
 fn a_tile_is_split_where_it_would_be_too_large() {
-    // 1000 texels for each of 64 cells is 64000 for all: 32 tiles of 2048 a side.
+    // 1000 texels for each of 64 cells is 64000 for all: 32 tiles of 2048 per side.
     let settings = PvssmSettings { thrifty: false, rounds: 16, ..PvssmSettings::default() };
     let mut cells = vec![Vec2::splat(10.0); (settings.grid * settings.grid) as usize];
     cells[0] = Vec2::splat(64_000.0);
