@@ -4,7 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
-use antumbra::Technique;
+use antumbra::Shadows;
 use antumbra_metrics::Figures;
 use antumbra_reference::{Reference, Settings, trace};
 use antumbra_scene::Scene;
@@ -15,9 +15,9 @@ use std::sync::atomic::AtomicBool;
 
 const SIZE: [u32; 2] = [128, 128];
 
-fn figure(technique: &dyn Technique, name: &str) -> f64 {
-    let figures = block_on(technique.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
-    figures.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no figure {name}")).1
+fn stat(shadows: &Shadows, name: &str) -> f64 {
+    let stats = block_on(shadows.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
+    stats.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no count of {name}")).1
 }
 
 /// The truth over whole pixels: the technique filters over them.
@@ -26,20 +26,20 @@ fn truth(scene: &Scene, light_samples: u32) -> Reference {
     trace(scene, &settings, &|_| (), &AtomicBool::new(false)).unwrap_or_else(|e| panic!("{}: {e}", scene.name))
 }
 
-/// How far techniques are from the truth, in their order.
+/// The errors of techniques against the truth, in their order.
 fn judged(scene: &Scene, specs: &[&str], light_samples: u32) -> Vec<Figures> {
     let (renderer, truth) = (drawn(scene, SIZE), truth(scene, light_samples));
     let judge = |spec: &&str| {
-        let picture =
+        let visibility =
             shadowed(&renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{}, {spec}: {e}", scene.name));
-        compared(&picture, &truth)
+        compared(&visibility, &truth)
     };
     specs.iter().map(judge).collect()
 }
 
 #[test]
 fn errors_are_those_of_one_fine_map() {
-    // Penumbrae of few pixels: here the perceptual function allows for more than in larger pictures.
+    // Penumbrae of few pixels: here the perceptual function allows for more than in larger images.
     for (name, bound) in [("fence", 0.022), ("layers", 0.06), ("plant", 0.05)] {
         let found = judged(&builtin(name), &["pvssm", "smooth-pcss:map=4096"], 256);
         let [ours, fine] = [found[0].average_error, found[1].average_error];
@@ -82,20 +82,20 @@ fn no_discretisation_shows_from_a_hand_s_breadth_to_a_hundred_metres() {
         scene.camera.eye = target + direction * distance;
         let (renderer, exact) = (drawn(&scene, SIZE), truth(&scene, 256));
         let mut one = technique("pvssm");
-        let picture = shadowed(&renderer, &mut one).unwrap_or_else(|e| panic!("{e}"));
+        let visibility = shadowed(&renderer, &mut one).unwrap_or_else(|e| panic!("{e}"));
         let fine = shadowed(&renderer, &mut technique("pvssm:detail=6,rounds=16")).unwrap_or_else(|e| panic!("{e}"));
-        let (of_truth, of_fine) = (compared(&picture, &exact), {
+        let (of_truth, of_fine) = (compared(&visibility, &exact), {
             let mut finer = exact.clone();
             finer.visibility.clone_from(&fine);
-            compared(&picture, &finer)
+            compared(&visibility, &finer)
         });
         println!(
             "{distance} m: FLIP {:.4}, average error {:.4}; against six times the texels FLIP {:.4}; {} tiles, {:.2} megatexels",
             of_truth.flip,
             of_truth.average_error,
             of_fine.flip,
-            figure(&*one, "tiles"),
-            figure(&*one, "megatexels"),
+            stat(&one, "tiles"),
+            stat(&one, "megatexels"),
         );
         worst = if of_truth.flip > worst.0 { (of_truth.flip, distance) } else { worst };
         coarse = if of_fine.flip > coarse.0 { (of_fine.flip, distance) } else { coarse };
@@ -112,7 +112,7 @@ fn memory_of_maps_is_within_the_budget_whatever_is_drawn() {
         let mut one = technique(spec);
         shadowed(&drawn(&builtin("plant"), SIZE), &mut one).unwrap_or_else(|e| panic!("{e}"));
         let bytes: u64 = one.memory().iter().filter(|m| maps.contains(&m.pass)).map(|m| m.bytes).sum();
-        println!("{spec}: {:.1} MB of maps, {} tiles", bytes as f64 * 1e-6, figure(&*one, "tiles"));
+        println!("{spec}: {:.1} MB of maps, {} tiles", bytes as f64 * 1e-6, stat(&one, "tiles"));
         assert!(bytes > 16_000_000 && bytes < 48_000_000, "{spec}: {bytes} bytes");
     }
 }
@@ -123,7 +123,7 @@ fn soft_shadows_need_fewer_texels_than_hard_ones() {
     let [soft, hard] = ["pvssm", "fvsm"].map(|spec| {
         let mut one = technique(spec);
         shadowed(&renderer, &mut one).unwrap_or_else(|e| panic!("{e}"));
-        figure(&*one, "megatexels")
+        stat(&one, "megatexels")
     });
     println!("megatexels: soft {soft}, hard {hard}");
     assert!(soft > 0.0 && soft < 0.5 * hard, "soft {soft}, hard {hard}");

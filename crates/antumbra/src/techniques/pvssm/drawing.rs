@@ -49,12 +49,10 @@ impl Pool {
             let [source, finer, coarser] =
                 [(2 * step).saturating_sub(1), 2 * step, 2 * step + 1].map(|level| self.layers.mip(level));
             let levels = bindings! { finer_level: &finer, coarser_level: &coarser };
-            let source = match first {
-                true => bindings! { tile_pool: &self.depth },
-                false => bindings! { source_layers: &source },
-            };
+            let (texels, nodes) = (bindings! { tile_pool: &self.depth }, bindings! { source_layers: &source });
+            let set: &[&[_]] = if first { &[&frame.bindings(), texels, levels] } else { &[nodes, levels] };
             let work = Work::Indirect(&plan.arguments, plan.reduce_offset(round, step));
-            recorder.compute("tile pyramid", &pipeline, &[&frame.bindings(), levels, source], work)?;
+            recorder.compute("tile pyramid", &pipeline, set, work)?;
         }
         Ok(())
     }

@@ -19,7 +19,7 @@ impl TechniqueFactory for Fvsm {
         name: "fvsm",
         title: "Fitted virtual shadow maps",
         source: "Giegl 2007",
-        summary: "hard shadows with a texel a pixel, however large the scene; antialiased over the pixel's footprint",
+        summary: "hard shadows with one texel per pixel, for scenes of any size; antialiased over the pixel's footprint",
     };
     const NEEDS: Needs = Pvssm::NEEDS;
 

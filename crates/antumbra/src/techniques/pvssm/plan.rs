@@ -54,7 +54,7 @@ pub(crate) const MOST_TILES: usize = 256;
 pub(crate) const MOST_ROUNDS: usize = 16;
 /// Tiles of a round, at most; see `decide.wesl`.
 pub(crate) const MOST_OF_ROUND: usize = 64;
-/// Texels a side of the coarsest nodes over the pool; see `tiles.wesl`.
+/// Texels per side of the coarsest nodes over the pool; see `tiles.wesl`.
 pub(crate) const LARGEST_NODE: u32 = 16;
 /// Words of a round's arguments before those of its batches.
 const ROUND_WORDS: u64 = 10;
@@ -158,9 +158,6 @@ impl Decided {
     }
 }
 
-/// Label of the decision's passes.
-const DECISION: &str = "tile decision";
-
 /// Stores the resolution that each kernel needs in the grid's pyramid: two numbers per node.
 pub(crate) fn predict(
     recorder: &mut Recorder,
@@ -174,7 +171,8 @@ pub(crate) fn predict(
     let help = "resolution that each cell of the window needs, as texels over the whole window: along x, along y";
     let layout = DebugLayout::Numbers { stride: 2, channels: 2, size: [side; 2], list: None };
     let grid = recorder.buffer("tile grid", BufferDescription::new(8 * nodes).cleared().debug(help, layout));
-    let pipeline = recorder.gpu.compute_pipeline(&ShaderKey::new("techniques::pvssm::predict"), "predict_resolution")?;
+    let pipeline =
+        recorder.gpu.compute_pipeline(&ShaderKey::new("techniques::pvssm::predict"), "predict_resolution")?;
     let own = bindings! { pvssm: uniform, grid_nodes: &grid };
     let set = [&frame.bindings()[..], &analysis.bindings(), own];
     recorder.compute("tile grid", &pipeline, &set, Work::Indirect(&analysis.list.tiles, 0))?;
@@ -223,7 +221,7 @@ impl Plan {
         grid: &wgpu::Buffer,
         drawn: Option<wgpu::Buffer>,
     ) -> Result<u32, Error> {
-        // The pool is asked for whenever the plan is: it is the same one if the plan is.
+        // Every recorded frame requests both plan and pool: if the plan is the same one, so is the pool.
         let may_keep = u32::from(drawn.as_ref() == Some(&self.tiles));
         let decision = recorder.uniform("tile decision", &DecisionUniform { may_keep });
         let key = bytemuck::cast_slice(&self.batch_groups);
@@ -238,7 +236,7 @@ impl Plan {
             tile_arguments: &self.arguments,
             batch_groups: &groups,
         };
-        recorder.compute(DECISION, &pipeline, &[set], Work::Groups([1, 1, 1]))?;
+        recorder.compute("tile decision", &pipeline, &[set], Work::Groups([1, 1, 1]))?;
         Ok(self.most_rounds)
     }
 

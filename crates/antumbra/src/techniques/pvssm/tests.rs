@@ -5,7 +5,6 @@ mod plans;
 mod prediction;
 mod seams;
 
-use crate::error::Error;
 use crate::scene::SceneRenderer;
 use crate::shadows::Shadows;
 use crate::techniques::spec::Spec;
@@ -16,20 +15,8 @@ use pollster::block_on;
 /// A built-in scene with its geometry buffer drawn.
 fn drawn(scene: &Scene, size: [u32; 2]) -> SceneRenderer {
     let mut renderer = SceneRenderer::new(gpu(), scene, size).unwrap_or_else(|e| panic!("{e}"));
-    submit_encoder(|encoder| renderer.record_geometry(gpu(), encoder, None));
+    submit(|recorder| renderer.record_geometry(gpu(), recorder.encoder(), None));
     renderer
-}
-
-/// Records and submits, with every validation error returned.
-fn submit_encoder(record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), Error>) {
-    let gpu = gpu();
-    let result = block_on(gpu.checked(|| {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        record(&mut encoder)?;
-        gpu.queue.submit([encoder.finish()]);
-        Ok(())
-    }));
-    result.unwrap_or_else(|e| panic!("{e}"));
 }
 
 fn scene(spec: &str) -> Scene {
@@ -45,7 +32,7 @@ fn technique(spec: &str) -> Shadows {
 fn shadowed(renderer: &SceneRenderer, shadows: &mut Shadows) -> Vec<f32> {
     let [width, height] = renderer.frame.size;
     renderer.write_visibility(gpu(), &vec![-7.0; (width * height) as usize]);
-    submit_encoder(|encoder| shadows.record(gpu(), encoder, &renderer.frame));
+    submit(|recorder| shadows.record(gpu(), recorder.encoder(), &renderer.frame));
     block_on(renderer.read_visibility(gpu())).unwrap_or_else(|e| panic!("{e}"))
 }
 

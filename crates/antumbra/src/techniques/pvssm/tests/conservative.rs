@@ -8,19 +8,19 @@ use pollster::block_on;
 
 const SIZE: u32 = 48;
 
-/// A scene of random triangles, some large, some slivers, some smaller than a texel, in place of a scene's own.
+/// A scene of random triangles, some large, some slivers, some smaller than a texel, instead of a scene's own.
 fn triangles(seed: u64) -> Scene {
     let mut random = Random(seed);
     let mut scene = scene("square");
     let mesh = scene.instances.iter().find(|i| !i.receiver_only).expect("a caster").mesh;
-    let mut place =
+    let mut point =
         |reach: f32| Vec3::new(random.within(-1.0, 1.0), random.within(-0.3, 0.3), random.within(-1.0, 1.0)) * reach;
     let mut positions = Vec::new();
     for k in 0..60 {
         let reach = [0.6, 0.05, 0.004][k % 3];
-        let middle = place(1.0) + Vec3::new(0.0, 1.0, 0.0);
-        let along = place(reach);
-        let third = if k % 4 == 0 { along * 0.5 + place(1e-4) } else { place(reach) };
+        let middle = point(1.0) + Vec3::new(0.0, 1.0, 0.0);
+        let along = point(reach);
+        let third = if k % 4 == 0 { along * 0.5 + point(1e-4) } else { point(reach) };
         positions.extend([middle, middle + along, middle + third]);
     }
     let mesh = &mut scene.meshes[mesh];
@@ -77,14 +77,14 @@ fn no_texel_that_a_caster_touches_is_missed_and_none_far_from_all_is_drawn() {
                 mesh.indices.chunks_exact(3).map(|t| {
                     let at = [t[0], t[1], t[2]]
                         .map(|v| project(i.world_from_object.transform_point3(mesh.positions[v as usize])));
-                    (at.map(|(place, _)| place), DVec3::from_array(at.map(|(_, depth)| depth)))
+                    (at.map(|(position, _)| position), DVec3::from_array(at.map(|(_, depth)| depth)))
                 })
             })
             .collect();
         for texel in 0..SIZE * SIZE {
             let middle = DVec2::new(f64::from(texel % SIZE) + 0.5, f64::from(texel / SIZE) + 0.5);
             let near: Vec<f64> = all.iter().map(|(corners, _)| separation(corners, middle, 0.5)).collect();
-            let place = format!("texel ({}, {}) of {seed}", texel % SIZE, texel / SIZE);
+            let name = format!("texel ({}, {}) of {seed}", texel % SIZE, texel / SIZE);
             let depth = f64::from(whole[texel as usize]);
             // An overlap smaller than rounding may or may not be drawn.
             if near.iter().any(|s| *s < -1e-3) {
@@ -94,10 +94,10 @@ fn no_texel_that_a_caster_touches_is_missed_and_none_far_from_all_is_drawn() {
                 let nearest = all.iter().zip(&near).filter(|(_, s)| **s < -1e-3);
                 let least = nearest.map(|((_, depths), _)| depths.min_element()).fold(0.0, f64::max);
                 if depth < 0.98 * least * (1.0 - 1e-5) {
-                    missed.push(format!("{place}: {depth} where {least} is touched"));
+                    missed.push(format!("{name}: {depth} where {least} is touched"));
                 }
             } else if depth > 0.0 && near.iter().all(|s| *s > 2e-2) {
-                extra.push(place);
+                extra.push(name);
             }
         }
     }

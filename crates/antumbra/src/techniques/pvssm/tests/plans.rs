@@ -42,7 +42,8 @@ fn check(decided: &Decided, cells: &[Vec2], settings: &PvssmSettings) {
         assert!(tile.texels.cmpgt(UVec2::ZERO).all() && tile.texels.max_element() <= settings.tile, "{tile:?}");
         assert!((tile.position + tile.texels).max_element() <= settings.tile, "beyond the pool: {tile:?}");
         for other in decided.tiles[..i].iter().filter(|t| t.round == tile.round) {
-            let apart = (tile.position + tile.texels).cmple(other.position) | (other.position + other.texels).cmple(tile.position);
+            let apart = (tile.position + tile.texels).cmple(other.position)
+                | (other.position + other.texels).cmple(tile.position);
             assert!(apart.any(), "{tile:?} and {other:?} share texels");
         }
         for cell in (y..y + height).flat_map(|row| (x..x + width).map(move |column| (row * side + column) as usize)) {
@@ -105,7 +106,7 @@ fn an_empty_grid_has_no_tile_and_one_cell_has_one() {
 
 #[test]
 fn a_tile_is_split_where_it_would_be_too_large() {
-    // 1000 texels for each of 64 cells is 64000 for all: 32 tiles of 2048 a side.
+    // 1000 texels for each of 64 cells is 64000 for all: 32 tiles of 2048 per side.
     let settings = PvssmSettings { thrifty: false, rounds: 16, ..PvssmSettings::default() };
     let mut cells = vec![Vec2::splat(10.0); (settings.grid * settings.grid) as usize];
     cells[0] = Vec2::splat(64_000.0);
