@@ -2,45 +2,85 @@
 
 mod common;
 
-use antumbra::gpu::recorder::Work;
-use antumbra::gpu::resource::storage_buffer;
+use antumbra::gpu::readback::read_buffer;
+use antumbra::gpu::recorder::{Recorder, Work};
+use antumbra::gpu::resources::{Resources, storage_buffer};
 use antumbra::gpu::shader::ShaderKey;
-use antumbra::{AdapterChoice, Error, Gpu, Recorder, Spec, Timer, bindings};
+use antumbra::{AdapterChoice, Error, Gpu, Spec, Timer, bindings};
 use common::{builtin, drawn, gpu, quick, technique};
 use pollster::block_on;
 
-/// A kernel that adds one to each number; `package::host` is the module that a key's `structs` text makes.
+/// A kernel that adds one to each number.
 fn add_one() -> ShaderKey {
     let text = "
-        @group(0) @binding(0) var<storage, read_write> numbers: array<u32>;
+        var<storage, read_write> numbers: array<u32>;
         @compute @workgroup_size(64) fn add_one(@builtin(global_invocation_id) id: vec3<u32>) {
             if id.x < arrayLength(&numbers) { numbers[id.x] += 1u; }
         }";
-    ShaderKey { structs: text.to_owned(), ..ShaderKey::new("host") }
+    ShaderKey::of_source(text)
 }
 
 #[test]
-#[should_panic(expected = "nothing is bound to `numbers`")]
-fn a_name_that_nothing_is_bound_to_is_said() {
+fn missing_and_unknown_bindings_are_errors_that_name_shader_and_resource() {
     let gpu = gpu();
     let pipeline = gpu.compute_pipeline(&add_one(), "add_one").expect("composes");
     let buffer = storage_buffer(gpu, "numbers", 400);
-    pipeline.bind_group(gpu, 0, bindings! { other: &buffer });
+    let bound = |set: &[antumbra::gpu::bindings::Binding]| {
+        gpu.submit(|recorder| recorder.compute("bound", &pipeline, &[set], Work::Groups([1, 1, 1])))
+    };
+    let missing = bound(bindings! {}).expect_err("nothing is bound").to_string();
+    assert!(missing.contains("kernel") && missing.contains("nothing is bound to `numbers`"), "{missing}");
+    let unknown = bound(bindings! { numbers: &buffer, other: &buffer }).expect_err("one too many").to_string();
+    assert!(unknown.contains("kernel") && unknown.contains("`other`"), "{unknown}");
+    assert!(bound(bindings! { numbers: &buffer }).is_ok());
 }
 
 #[test]
-fn threads_are_rounded_up_to_workgroups_and_unused_names_are_passed_over() {
+fn resources_are_kept_from_frame_to_frame_counted_and_shown() {
+    use antumbra::gpu::resources::BufferDescription;
+    use antumbra::gpu::texture::TextureDescription;
+    let (gpu, mut resources) = (gpu(), Resources::default());
+    let pipeline = gpu.compute_pipeline(&add_one(), "add_one").expect("composes");
+    let mut frame = |size: u32, resources: &mut Resources| {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut recorder = Recorder::new(gpu, &mut encoder, resources);
+        let texel = TextureDescription::new([size; 2], wgpu::TextureFormat::R32Float, "made up");
+        let textures = [recorder.texture("map", texel), recorder.texture("map", texel)];
+        let numbers = recorder.buffer("numbers", BufferDescription::new(400).cleared());
+        recorder
+            .compute("add", &pipeline, &[bindings! { numbers: &numbers }], Work::Groups([1, 1, 1]))
+            .expect("records");
+        drop(recorder);
+        gpu.queue.submit([encoder.finish()]);
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu, &numbers)).expect("reads"));
+        (textures, words[0])
+    };
+    let ([first, second], one) = frame(8, &mut resources);
+    assert!(first != second, "each request of a label has a resource of its own");
+    let made = resources.made();
+    let (again, cleared) = frame(8, &mut resources);
+    assert!(again == [first, second] && resources.made() == made, "what fits is kept, in the order of requests");
+    assert_eq!([one, cleared], [1, 1], "a cleared buffer is zero at the start of every frame");
+    assert_eq!(resources.memory().iter().map(|m| (m.pass, m.bytes)).collect::<Vec<_>>(), [("add", 2 * 256 + 400)]);
+    let names: Vec<_> = resources.debug_views().iter().map(|view| (view.name, view.help)).collect();
+    assert_eq!(names, [("map", "made up"); 2]);
+    let (larger, _) = frame(16, &mut resources);
+    assert_eq!((larger[0].size(), resources.made()), ([16, 16], made + 2), "what does not fit is made anew");
+}
+
+#[test]
+fn threads_are_rounded_up_to_workgroups() {
     let gpu = gpu();
     let pipeline = gpu.compute_pipeline(&add_one(), "add_one").expect("composes");
     assert_eq!(pipeline.workgroup, [64, 1, 1]);
-    let (buffer, unused) = (storage_buffer(gpu, "numbers", 400), storage_buffer(gpu, "unused", 4));
-    let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    let mut recorder = Recorder::new(gpu, &mut encoder);
-    let set = bindings! { numbers: &buffer, not_in_the_shader: &unused };
-    recorder.compute("threads", &pipeline, set, Work::Threads([100, 1, 1]));
-    recorder.compute("groups", &pipeline, set, Work::Groups([1, 1, 1]));
-    gpu.queue.submit([encoder.finish()]);
-    let bytes = block_on(antumbra::gpu::resource::read_buffer(gpu, &buffer)).expect("reads");
+    let buffer = storage_buffer(gpu, "numbers", 400);
+    let set = [&bindings! { numbers: &buffer }[..]];
+    let recorded = gpu.submit(|recorder| {
+        recorder.compute("threads", &pipeline, &set, Work::Threads([100, 1, 1]))?;
+        recorder.compute("groups", &pipeline, &set, Work::Groups([1, 1, 1]))
+    });
+    recorded.expect("records");
+    let bytes = block_on(read_buffer(gpu, &buffer)).expect("reads");
     let numbers: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
     let expected: Vec<u32> = (0..100).map(|i| if i < 64 { 2 } else { 1 }).collect();
     assert_eq!(numbers, expected, "100 threads are two workgroups, one workgroup is 64 threads");
@@ -61,10 +101,13 @@ fn passes_of_one_name_are_timed_together_in_the_order_of_recording() {
     let mut timer = Timer::new(gpu).expect("makes a timer");
     for _frame in 0..2 {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let mut recorder = Recorder::timed(gpu, &mut encoder, &timer);
+        let mut resources = Resources::default();
+        let mut recorder = Recorder::new(gpu, &mut encoder, &mut resources).timed(Some(&timer));
         for label in ["one", "two", "one", "three", "one"] {
-            recorder.compute(label, &pipeline, bindings! { numbers: &buffer }, Work::Groups([1 << 14, 1, 1]));
+            let set = bindings! { numbers: &buffer };
+            recorder.compute(label, &pipeline, &[set], Work::Groups([1 << 14, 1, 1])).expect("records");
         }
+        drop(recorder);
         let times = timer.finish(gpu, encoder).expect("finishes");
         if !gpu.capabilities.timestamps {
             assert!(times.iter().all(|(_, ms)| ms.is_none()), "{times:?}");
@@ -85,7 +128,7 @@ fn every_pass_of_a_technique_is_timed_under_the_label_that_its_memory_bears() {
         let mut made = technique(&quick(info));
         let mut timer = Timer::new(gpu()).expect("makes a timer");
         let mut encoder = gpu().device.create_command_encoder(&Default::default());
-        renderer.record_shadow(&mut made, &mut Recorder::timed(gpu(), &mut encoder, &timer)).expect("records");
+        made.record_timed(gpu(), &mut encoder, &renderer.frame, Some(&timer)).expect("records");
         let times = timer.finish(gpu(), encoder).expect("finishes");
         assert!(!gpu().capabilities.timestamps || !times.is_empty(), "{}", info.name);
         for memory in made.memory().iter().filter(|_| gpu().capabilities.timestamps) {

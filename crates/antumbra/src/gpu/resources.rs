@@ -123,8 +123,9 @@ pub struct Resources {
     cursor: usize,
     frame: u64,
     groups: BindGroups,
-    /// Entries whose pass is the next one that is recorded.
+    /// Entries whose pass is the next one that is recorded, or the last one if no other follows.
     unassigned: Vec<usize>,
+    last_pass: Option<&'static str>,
     scratch: Vec<u8>,
     captures: bool,
     made: u64,
@@ -192,6 +193,9 @@ impl Resources {
     }
 
     pub(super) fn end_frame(&mut self) {
+        if let Some(pass) = self.last_pass {
+            self.assign_pass(pass);
+        }
         let oldest = self.frame.saturating_sub(KEPT_FRAMES);
         if self.entries.iter().any(|e| e.asked < oldest) {
             self.entries.retain(|e| e.asked >= oldest);
@@ -230,6 +234,7 @@ impl Resources {
 
     /// Counts what was made since the last pass for this one.
     pub(super) fn assign_pass(&mut self, pass: &'static str) {
+        self.last_pass = Some(pass);
         for index in self.unassigned.drain(..) {
             self.entries[index].pass = Some(pass);
         }

@@ -187,7 +187,12 @@ impl LightMaps {
     }
 
     /// Lists the clusters that any map of a group touches, for every group of the stage.
-    fn cull(&self, recorder: &mut Recorder, casters: &Casters, stage: &MapStage, [set, visible]: &[&[Binding]; 2],
+    fn cull(
+        &self,
+        recorder: &mut Recorder,
+        casters: &Casters,
+        stage: &MapStage,
+        [set, visible]: &[&[Binding]; 2],
     ) -> Result<(), Error> {
         let key = ShaderKey::new("passes::maps::light_maps::culling");
         let cull = recorder.gpu.compute_pipeline(&key, "cull_for_light_maps")?;

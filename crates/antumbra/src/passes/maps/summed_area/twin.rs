@@ -96,7 +96,8 @@ fn errors(size: u32, sums: &[Sums]) -> Vec<[f64; 2]> {
             let shape = TableShape { size, layers: 1, sums: *sums };
             let table = SummedArea::record(recorder, shape, &depth, "techniques::moments::vsm::warp", &warp)?;
             drawn = Some(depth);
-            let own = bindings! { boxes: &input, mean: &output, summed_table: &table.texture, table_means: &table.means };
+            let own =
+                bindings! { boxes: &input, mean: &output, summed_table: &table.texture, table_means: &table.means };
             recorder.compute("look", &look, &[own], Work::Threads([BOXES, 1, 1]))
         });
         let depth = drawn.expect("recorded");

@@ -1,7 +1,7 @@
 //! `shaders/light_lattice.wesl`: which points of the light a triangle hides.
 
-use crate::testing::{Random, evaluate};
 use crate::techniques::alias_free::soft::lattice::Lattice;
+use crate::testing::{Random, evaluate};
 use glam::{DMat2, DVec2, DVec3, Vec2, Vec3};
 
 /// Rows that are looked at.

@@ -62,7 +62,8 @@ impl Refinement {
         scene.light.size = trial.size;
         let renderer = SceneRenderer::new(gpu, &scene, [8, 8]).unwrap_or_else(|e| panic!("{e}"));
         let mut technique = AdaptiveSampling::make(gpu, trial.settings.clone()).unwrap_or_else(|e| panic!("{e}"));
-        let (mut encoder, mut resources) = (gpu.device.create_command_encoder(&Default::default()), Resources::default());
+        let (mut encoder, mut resources) =
+            (gpu.device.create_command_encoder(&Default::default()), Resources::default());
         let prepared = technique.prepare(&renderer.frame, &mut Recorder::new(gpu, &mut encoder, &mut resources));
         let tree = prepared.unwrap_or_else(|e| panic!("{e}")).tree;
         Refinement { trial, technique, tree, held: BTreeMap::new() }
