@@ -6,7 +6,7 @@ mod common;
 
 mod hard;
 mod overflow;
-// TODO(convert) mod soft;
+mod soft;
 
 use antumbra_scene::Scene;
 use glam::Vec2;
