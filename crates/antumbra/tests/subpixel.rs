@@ -2,7 +2,6 @@
 
 mod common;
 
-use antumbra::technique::Technique;
 use antumbra::techniques::alias_free::subpixel::SubpixelSettings;
 use antumbra::{Error, Spec};
 use antumbra_reference::{Reference, trace_centre};
@@ -33,15 +32,15 @@ struct Drawn {
     figures: BTreeMap<&'static str, f64>,
 }
 
-/// The second frame, which has room for what the first needed.
+/// The third frame, whose lists have the capacity that the first one needed.
 fn drawn_by(scene: &Scene, spec: &str) -> Drawn {
-    drawn_after(scene, spec, 1)
+    drawn_after(scene, spec, 2)
 }
 
 /// The frame after so many others.
 fn drawn_after(scene: &Scene, spec: &str, frames: u32) -> Drawn {
     let renderer = drawn(scene, SIZE);
-    let mut technique: Box<dyn Technique> = technique(spec);
+    let mut technique = technique(spec);
     for _ in 0..frames {
         shadowed(&renderer, &mut technique).unwrap_or_else(|e| panic!("{spec}: {e}"));
         gpu().wait().expect("the device is there");

@@ -5,6 +5,7 @@ use crate::error::Error;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::mpsc::{TryRecvError, channel};
+use std::time::Duration;
 
 /// Reads a buffer back; it needs `COPY_SRC`.
 pub async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
@@ -57,6 +58,9 @@ fn staging(gpu: &Gpu, label: &str, size: u64) -> wgpu::Buffer {
     })
 }
 
+/// Within this time a callback runs after its work is done.
+const CALLBACK_TIME: Duration = Duration::from_secs(10);
+
 async fn map(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
     let (send, receive) = channel();
     staging.map_async(wgpu::MapMode::Read, .., move |result| {
@@ -64,11 +68,12 @@ async fn map(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
         let _ = send.send(result);
     });
     gpu.wait()?;
-    match receive.try_recv() {
-        Ok(mapped) => mapped.map_err(|e| Error::Lost(e.to_string()))?,
-        Err(TryRecvError::Empty) => return Err(Error::CannotWait),
-        Err(e) => return Err(Error::Lost(e.to_string())),
-    }
+    // Where threads share the device, another one may be the one that runs the callback, a moment after this one's wait.
+    let mapped = match receive.try_recv() {
+        Err(TryRecvError::Empty) if !cfg!(target_arch = "wasm32") => receive.recv_timeout(CALLBACK_TIME).ok(),
+        result => result.ok(),
+    };
+    mapped.ok_or(Error::CannotWait)?.map_err(|e| Error::Lost(e.to_string()))?;
     Ok(staging.get_mapped_range(..).map_err(|e| Error::Lost(e.to_string()))?.to_vec())
 }
 

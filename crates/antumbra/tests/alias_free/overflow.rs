@@ -1,7 +1,8 @@
-//! Where there are more pairs than there is room for.
+//! Frames with more pairs than the lists can hold.
 
 use super::common::{camera, drawn, gpu, ground, light, scene, shadowed, technique, truth};
 use super::differing;
+use antumbra::Shadows;
 use antumbra_scene::{Mesh, Scene};
 use glam::Vec3;
 use pollster::block_on;
@@ -30,10 +31,10 @@ fn slivers(count: u32) -> Scene {
     )
 }
 
-/// Of the last frame: what was needed, and the room that there was.
-fn needed_and_room(technique: &dyn antumbra::Technique) -> [f64; 2] {
-    let figures = block_on(technique.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
-    let of = |name| figures.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no {name} in {figures:?}")).1;
+/// The pairs of the last frame, and the capacity of the next.
+fn pairs_and_capacity(shadows: &Shadows) -> [f64; 2] {
+    let stats = block_on(shadows.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
+    let of = |name| stats.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no {name} in {stats:?}")).1;
     [of("triangle-texel pairs").max(of("triangle-block pairs")), of("room for pairs")]
 }
 
@@ -52,7 +53,7 @@ fn a_frame_without_room_has_the_same_picture() {
         for frame in 0..2 {
             let picture = shadowed(&renderer, &mut small).expect("records");
             assert!(picture == roomy, "{spec}, frame {frame}: the picture differs");
-            let [needed, room] = needed_and_room(&*small);
+            let [needed, room] = pairs_and_capacity(&small);
             assert!(needed > room, "{spec} should break: {needed} pairs, room for {room}");
         }
     }
@@ -67,7 +68,7 @@ fn room_grows_to_what_frames_need() {
     let mut pictures = Vec::new();
     for _ in 0..4 {
         pictures.push(shadowed(&renderer, &mut one).expect("records"));
-        rooms.push(needed_and_room(&*one));
+        rooms.push(pairs_and_capacity(&one));
     }
     assert!(rooms[0][0] > rooms[0][1], "the first frame should have too little room: {rooms:?}");
     assert!(rooms[3][0] <= rooms[3][1], "later frames should have enough: {rooms:?}");

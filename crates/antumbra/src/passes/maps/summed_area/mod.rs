@@ -104,7 +104,7 @@ fn sums(
     let down_columns = recorder.gpu.compute_pipeline(&key.feature("columns", true), "sum_lines")?;
     let texture = |help| TextureDescription::new([size; 2], format, help).layers(layers);
     let rows = recorder.texture("row sums", texture("sums over all texels to the left"));
-    let table = recorder.texture(label, texture("sums over all texels to the left and above, without their mean"));
+    let table = recorder.texture(LABEL, texture("sums over all texels to the left and above, without their mean"));
     let groups = Work::Groups([size.div_ceil(8), 1, layers]);
     let target = bindings! { summed: &rows };
     recorder.compute(label, &along_rows, &[source, &[target]].concat(), groups)?;

@@ -7,9 +7,10 @@ use crate::gpu::readback::read_buffer;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
-use crate::gpu::texture::{Texture, TextureDescription};
+use crate::gpu::texture::Texture;
 use crate::input::frame::{Frame, light_from_world};
 use crate::passes::maps::depth_map::DepthMap;
+use crate::passes::maps::summed_area::mask_counts;
 use crate::passes::triangles::adjacency::edge_rings;
 use crate::passes::triangles::culling::Culling;
 use crate::{binding_array, bindings, gpu_struct};
@@ -90,7 +91,7 @@ impl SilhouetteMask {
             let set: [&[_]; 5] = [&frame.bindings(), own, counted, of_batch, &batch.bindings(&frame.casters)];
             recorder.compute("silhouette mask", pipeline, &set, Work::groups(batch.cluster_count))?;
         }
-        let counts = count_bits(recorder, "silhouette mask", &texels, size)?;
+        let counts = mask_counts(recorder, "silhouette mask", &texels, size)?;
         Ok(SilhouetteMask { texels, counts, edges })
     }
 
@@ -104,18 +105,4 @@ impl SilhouetteMask {
         let texels = read_buffer(gpu, &self.texels).await?;
         Ok([edges, texels.iter().map(|byte| u64::from(byte.count_ones())).sum()])
     }
-}
-
-/// The summed-area table of a mask's bits.
-fn count_bits(recorder: &mut Recorder, label: &'static str, mask: &wgpu::Buffer, size: u32) -> Result<Texture, Error> {
-    let key = ShaderKey::new("passes::maps::summed_area::prefix").feature("counts", true);
-    let along_rows = recorder.gpu.compute_pipeline(&key, "sum_lines")?;
-    let down_columns = recorder.gpu.compute_pipeline(&key.feature("columns", true), "sum_lines")?;
-    let description = |help| TextureDescription::new([size; 2], wgpu::TextureFormat::R32Uint, help).layers(1);
-    let rows = recorder.texture("row sums", description("set bits to the left"));
-    let sums = recorder.texture("summed-area table", description("set bits to the left and above"));
-    let groups = || Work::Groups([size.div_ceil(8), 1, 1]);
-    recorder.compute(label, &along_rows, &[bindings! { mask: mask, summed: &rows }], groups())?;
-    recorder.compute(label, &down_columns, &[bindings! { row_sums: &rows, summed: &sums }], groups())?;
-    Ok(sums)
 }
