@@ -1,7 +1,7 @@
 //! The nearest few casters of each texel, seen from the light's centre, in one pass over the casters.
 //!
-//! Each fragment inserts its depth among the texel's nearest by a chain of atomic maxima: the multi-depth test of
-//! [Liu et al. 2010]. Depth peeling, a pass over the casters for each layer, gives the same bits. Time of the single pass
+//! Each fragment inserts its depth among the texel's nearest by a chain of atomic maxima: the multi-depth test of [Liu
+//! et al. 2010]. Depth peeling, a pass over the casters for each layer, gives the same bits. Time of the single pass
 //! relative to peeling, for as many surfaces as layers, on llvmpipe with 2 cores (medians of 5 frames):
 //!
 //! | scene (triangles) | 1024 texels, 2 layers | 4 layers | 2048 texels, 2 layers | 4 layers |
@@ -41,12 +41,12 @@ gpu_struct! {
 }
 
 /// Square maps of depth intervals, nearest first: each texel has the `near / z` of the interval's nearer end, as in
-/// [`DepthMap`], and its length. A layer is a surface, or several with little parallax over the light, such as both sides
-/// of a slat or the leaves of a twig. The last layer extends down to the collected surfaces that have no layer of their
-/// own. An empty layer is 0.
+/// [`DepthMap`], and its length. A layer is a surface, or several with little parallax over the light, such as both
+/// sides of a slat or the leaves of a twig. The last layer extends down to the collected surfaces that have no layer of
+/// their own. An empty layer is 0.
 ///
-/// Surfaces of equal depth, bit for bit, are one. Coinciding surfaces of different triangles may differ in the last bits,
-/// by up to some 4e-7 of the depth.
+/// Surfaces of equal depth, bit for bit, are one. Coinciding surfaces of different triangles may differ in the last
+/// bits, by up to some 4e-7 of the depth.
 pub struct DepthLayers {
     /// `Rg32Float`, `size` x `size` x `layers`; its view is an array even of a single layer.
     pub texture: Texture,
@@ -94,7 +94,8 @@ impl DepthLayers {
     }
 }
 
-/// Surfaces that are collected per texel: one per layer, and more if surfaces are `merged`, as far as a buffer holds them.
+/// Surfaces that are collected per texel: one per layer, and more if surfaces are `merged`, as far as a buffer holds
+/// them.
 fn collected_surfaces(gpu: &Gpu, size: u32, layers: u32, merged: bool) -> Result<u32, Error> {
     let limits = gpu.device.limits();
     let most = limits.max_buffer_size.min(limits.max_storage_buffer_binding_size) / 4;

@@ -17,8 +17,8 @@ gpu_struct! {
     }
 }
 
-/// Reduces maps whose frustum begins at `map_near` metres: levels from half their size down to one texel, an array layer
-/// for each of theirs. `Rgba32Uint`; see `shaders/patches.wesl`.
+/// Reduces maps whose frustum begins at `map_near` metres: levels from half their size down to one texel, an array
+/// layer for each of theirs. `Rgba32Uint`; see `shaders/patches.wesl`.
 pub fn patch_pyramid(recorder: &mut Recorder, maps: &DepthLayers, map_near: f32) -> Result<Texture, Error> {
     let half = maps.nearest.size.div_ceil(2).max(1);
     let (layers, mips) = (maps.texture.texture.depth_or_array_layers(), 32 - half.leading_zeros());

@@ -8,8 +8,8 @@ use crate::passes::triangles::culling::Surfaces;
 
 /// The receiver map and one or two occluder maps [Atty 2006, sections 3.2 and 3.5].
 ///
-/// The paper's second pass keeps the farthest back faces. Here it is the farthest surface before the receivers, whatever
-/// the winding of its triangles: the same on a closed mesh.
+/// The paper's second pass keeps the farthest back faces. Here it is the farthest surface before the receivers,
+/// whatever the winding of its triangles: the same on a closed mesh.
 pub(super) struct Maps {
     pub receivers: DepthMap,
     pub nearest: DepthMap,

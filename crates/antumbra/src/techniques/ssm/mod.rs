@@ -1,8 +1,8 @@
 //! Lionel Atty, Nicolas Holzschuch, Marc Lapierre, Jean-Marc Hasenfratz, Charles Hansen, François Sillion, 2006: Soft
 //! shadow maps: efficient sampling of light source visibility, <http://maverick.inria.fr/Publications/2006/AHLHHS06/>.
 //!
-//! The texels of an occluder map are micro-patches. Each adds its soft shadow to a map of the receivers, which is projected
-//! on the image.
+//! The texels of an occluder map are micro-patches. Each adds its soft shadow to a map of the receivers, which is
+//! projected on the image.
 
 mod accumulate;
 mod maps;

@@ -101,12 +101,16 @@ impl Patches {
             shape,
         };
         let rising = recorder.texture("rising patches", shape.texture(1, wgpu::TextureFormat::Rgba32Float, rest));
-        let mut optional = Vec::new();
+        let mut sources = frame.bindings().to_vec();
+        sources.extend(binding_array! {
+            depth_map: &maps.receivers.texture,
+            nearest_occluders: &maps.nearest.texture,
+        });
         if let Some(bounds) = &bounds {
-            optional.extend(binding_array! { pyramid_bounds: &bounds.bounds });
+            sources.extend(binding_array! { pyramid_bounds: &bounds.bounds });
         }
         if let Some(farthest) = &maps.farthest {
-            optional.extend(binding_array! { farthest_occluders: farthest });
+            sources.extend(binding_array! { farthest_occluders: farthest });
         }
         let key = ShaderKey::new("techniques::ssm::patches")
             .feature("flat", bounds.is_none())
@@ -122,17 +126,15 @@ impl Patches {
                 step: &step,
                 ssm: &patches.uniform,
                 totals: &patches.totals,
-                depth_map: &maps.receivers.texture,
-                nearest_occluders: &maps.nearest.texture,
                 level_patches: &level_patches,
                 level_tops: &level_tops,
                 level_rising: &level_rising,
                 rising: &below,
             };
-            let pipeline = if level == 0 { &first } else { &next };
+            let (pipeline, sources) = if level == 0 { (&first, &sources[..]) } else { (&next, &[][..]) };
             let side = patches.side(level);
             let work = Work::Threads([side, side, shape.layers]);
-            recorder.compute("micro-patches", pipeline, &[&frame.bindings(), set, &optional], work)?;
+            recorder.compute("micro-patches", pipeline, &[set, sources], work)?;
         }
         Ok(patches)
     }

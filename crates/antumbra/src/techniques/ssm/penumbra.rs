@@ -1,4 +1,5 @@
-//! The fraction of the light that a micro-patch hides, against the paper's own construction [Atty 2006, sections 3.3 and 3.4].
+//! The fraction of the light that a micro-patch hides, against the paper's own construction [Atty 2006, sections 3.3
+//! and 3.4].
 
 use crate::testing::{Random, Worst, evaluate};
 

@@ -31,8 +31,8 @@ const MOST_DIFFERENCE: f32 = 0.01;
 /// Fills the visibility of all pixels of a list. `spacing` is that of the coarse grid, in pixels, a power of two.
 ///
 /// `shade` is called for each stage with the list of its pixels and with the buffer `sharpness`, an `f32` per pixel of
-/// the image: an upper bound of the change of visibility per pixel. It records passes that write visibility and sharpness
-/// (more than 0) of the listed pixels.
+/// the image: an upper bound of the change of visibility per pixel. It records passes that write visibility and
+/// sharpness (more than 0) of the listed pixels.
 pub fn shade_sparsely(
     recorder: &mut Recorder,
     frame: &Frame,
