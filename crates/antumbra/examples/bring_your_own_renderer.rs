@@ -239,7 +239,7 @@ impl Host {
         let pipeline = self.pipeline(stage, wgpu::TextureFormat::Rgba16Float, true);
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             color_attachments: &[antumbra::gpu::recorder::color_target(&self.normals, wgpu::Color::TRANSPARENT)],
-            depth_stencil_attachment: Some(antumbra::gpu::recorder::depth_target(&self.depth)),
+            depth_stencil_attachment: antumbra::gpu::recorder::depth_target(&self.depth, Some(0.0)),
             ..Default::default()
         });
         pass.set_pipeline(&pipeline);

@@ -5,6 +5,8 @@ mod host;
 
 mod common;
 
+use antumbra::gpu::recorder::Recorder;
+use antumbra::gpu::resources::Resources;
 use antumbra::input::casters::{Indices, Mask, MeshBuffers};
 use antumbra::passes::maps::depth_map::DepthMap;
 use antumbra::{Aabb, Casters, Error};
@@ -46,7 +48,7 @@ fn borrowed(scene: &Scene, layout: Layout) -> Vec<f32> {
 fn with_casters(scene: &Scene, casters: Casters) -> Vec<f32> {
     let mut renderer = drawn(scene, SIZE);
     renderer.frame.casters = Arc::new(casters);
-    common::submit(|recorder| renderer.record_geometry(recorder)).expect("draws");
+    common::submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).expect("draws");
     shadowed(&renderer, &mut technique("pcss:map=256")).expect("draws")
 }
 
@@ -233,10 +235,16 @@ fn culling_draws_what_the_frustum_holds_and_drops_nothing_of_it() {
     let renderer = drawn(&scene, [16, 16]);
     let frame = &renderer.frame;
     let size = 256;
-    let map = DepthMap::new(gpu(), size, &frame.casters).expect("fits");
-    common::submit(|recorder| map.record(recorder, &frame.casters, frame.map_clip_from_world())).expect("draws");
+    let (mut map, mut resources) = (None, Resources::default());
+    common::submit(|encoder| {
+        let mut recorder = Recorder::new(gpu(), encoder, &mut resources);
+        map = Some(DepthMap::of_light(&mut recorder, frame, size)?);
+        Ok(())
+    })
+    .expect("draws");
+    let map = map.expect("recorded");
     let all = frame.casters.triangle_count();
-    let drawn = block_on(map.culling().triangles_drawn(gpu())).expect("reads") as f64 / all as f64;
+    let drawn = block_on(map.culling.triangles_drawn(gpu())).expect("reads") as f64 / all as f64;
     assert!(drawn >= part && drawn < 0.25, "{drawn:.3} of {all} triangles drawn where the frustum holds {part:.3}");
     let depths: Vec<f32> = bytemuck::pod_collect_to_vec(&block_on(gpu().read_texture(&map.texture)).expect("reads"));
     let wrong = |scene: &Scene| wrong_texels(&depths, size, scene, frame.frustum.tan_half.x, frame.frustum.near);

@@ -3,7 +3,10 @@
 mod common;
 
 use antumbra::Error;
-use antumbra::gpu::resource::{Texture, read_layers, read_texture};
+use antumbra::gpu::readback::{read_layers, read_texture};
+use antumbra::gpu::recorder::Recorder;
+use antumbra::gpu::resources::Resources;
+use antumbra::gpu::texture::Texture;
 use antumbra::passes::maps::depth_layers::DepthLayers;
 use antumbra::passes::maps::depth_map::DepthMap;
 use antumbra::scene::SceneRenderer;
@@ -44,14 +47,23 @@ fn layers(renderer: &SceneRenderer, size: u32, count: u32) -> Vec<Vec<f32>> {
 }
 
 fn drawn_layers(renderer: &SceneRenderer, size: u32, count: u32) -> DepthLayers {
-    let mut slot = None;
-    draw(&mut slot, renderer, size, count, 0.0);
-    slot.expect("made")
+    draw(&mut Resources::default(), renderer, [size, count], 0.0).expect("draws")
 }
 
-fn draw(slot: &mut Option<DepthLayers>, renderer: &SceneRenderer, size: u32, count: u32, apart: f32) {
-    common::submit(|recorder| DepthLayers::of_light(slot, recorder, &renderer.frame, size, count, apart).map(|_| ()))
-        .expect("draws");
+/// Draws so many maps of so many texels per side with the resources of earlier frames.
+fn draw(
+    resources: &mut Resources,
+    renderer: &SceneRenderer,
+    [size, count]: [u32; 2],
+    apart: f32,
+) -> Result<DepthLayers, Error> {
+    let mut maps = None;
+    common::submit(|encoder| {
+        let mut recorder = Recorder::new(gpu(), encoder, resources);
+        maps = Some(DepthLayers::of_light(&mut recorder, &renderer.frame, size, count, apart)?);
+        Ok(())
+    })?;
+    Ok(maps.expect("recorded"))
 }
 
 /// What of a picture differs in its bits.
@@ -77,10 +89,14 @@ fn the_first_layer_is_the_depth_map_and_depths_descend() {
     // The plant has leaves that are cut out of a texture.
     for spec in ["layers", "fence:slats=9", "bumpy", "plant:leaves=8"] {
         let renderer = drawn(&builtin(spec), [16, 16]);
-        let mut slot = None;
-        common::submit(|recorder| DepthMap::of_light(&mut slot, recorder, &renderer.frame, SIZE).map(|_| ()))
-            .expect("draws");
-        let map = depths(&slot.expect("made").texture.texture);
+        let (mut map, mut resources) = (None, Resources::default());
+        common::submit(|encoder| {
+            let mut recorder = Recorder::new(gpu(), encoder, &mut resources);
+            map = Some(DepthMap::of_light(&mut recorder, &renderer.frame, SIZE)?);
+            Ok(())
+        })
+        .expect("draws");
+        let map = depths(&map.expect("recorded").texture.texture);
         assert!(filled(&map) > 1000, "{spec}: the map is empty");
         for count in [1, 4] {
             let maps = drawn_layers(&renderer, SIZE, count);
@@ -227,17 +243,17 @@ fn layers_of_sheets(heights: &[f32], count: u32, gap: f32) -> Vec<Ends> {
     // So many texels as the light moves something by, over `gap` of inverse distance.
     let frustum = renderer.frame.frustum;
     let apart = gap * 0.25 / (2.0 * frustum.tan_half.x / SIZE as f32);
-    let mut slot = None;
-    draw(&mut slot, &renderer, SIZE, count, apart);
+    let mut resources = Resources::default();
+    draw(&mut resources, &renderer, [SIZE, count], apart).expect("draws");
     // Twice: nothing is left of the first time.
-    draw(&mut slot, &renderer, SIZE, count, apart);
+    let maps = draw(&mut resources, &renderer, [SIZE, count], apart).expect("draws");
     let of_layer = |layer: &Vec<[f32; 2]>| {
         let first = layer[0];
         let same = |t: &[f32; 2]| (t[0] - first[0]).abs() + (t[1] - first[1]).abs() < 1e-6 * first[0].max(1e-9);
         assert!(layer.iter().all(same), "sheets fill the map");
         (first[0] > 0.0).then(|| (frustum.near / first[0], frustum.near / (first[0] - first[1])))
     };
-    columns(&slot.expect("made").texture).iter().map(of_layer).collect()
+    columns(&maps.texture).iter().map(of_layer).collect()
 }
 
 #[test]
@@ -291,11 +307,9 @@ fn nothing_is_left_of_the_frame_before() {
         let quads = vec![quad([0.1, y, 0.0], [0.6; 2]), quad([-0.1, y + 0.2, 0.3], [0.5; 2])];
         drawn(&casting(quads), [16, 16])
     });
-    let mut slot = None;
-    draw(&mut slot, &high, SIZE, 2, 0.0);
-    let first = slot.as_ref().expect("made").texture.clone();
-    draw(&mut slot, &low, SIZE, 2, 0.0);
-    let again = slot.expect("made").texture;
+    let mut resources = Resources::default();
+    let first = draw(&mut resources, &high, [SIZE, 2], 0.0).expect("draws").texture;
+    let again = draw(&mut resources, &low, [SIZE, 2], 0.0).expect("draws").texture;
     assert_eq!(again.texture, first.texture, "the maps are drawn into again");
     for (i, (fresh, used)) in layers(&low, SIZE, 2).iter().zip(of_texture(&again)).enumerate() {
         let wrong = differing(&used, fresh);
@@ -304,32 +318,31 @@ fn nothing_is_left_of_the_frame_before() {
 }
 
 #[test]
-fn maps_are_kept_while_size_number_and_casters_are_the_same() {
-    let (few, more) = (drawn(&builtin("fence:slats=9"), [16, 16]), drawn(&builtin("layers"), [16, 16]));
-    let mut slot = None;
-    let mut buffer = |renderer: &SceneRenderer, size, count| {
-        let mut found = None;
-        common::submit(|recorder| {
-            let maps = DepthLayers::of_light(&mut slot, recorder, &renderer.frame, size, count, 0.0)?;
-            assert_eq!(maps.memory()[1].bytes, u64::from(size * size * (3 * count + 1) * 4));
-            found = Some(maps.texture.texture.clone());
-            Ok(())
-        })
-        .map(|_| found.expect("drawn"))
+fn maps_are_kept_while_size_and_number_are_the_same() {
+    let renderer = drawn(&builtin("fence:slats=9"), [16, 16]);
+    let mut resources = Resources::default();
+    let mut texture = |size, count| {
+        let maps = draw(&mut resources, &renderer, [size, count], 0.0)?;
+        let passes = ["depth layers", "merging layers"];
+        let memory = resources.memory();
+        let found: u64 = memory.iter().filter(|m| passes.contains(&m.pass)).map(|m| m.bytes).sum();
+        let maps_alone = u64::from(size * size * (3 * count + 1) * 4);
+        assert!((maps_alone..maps_alone + 2048).contains(&found), "{size} texels, {count} layers: {memory:?}");
+        Ok(maps.texture.texture.clone())
     };
-    let first = buffer(&few, 64, 2).expect("draws");
-    assert_eq!(buffer(&few, 64, 2).expect("draws"), first);
+    let first = texture(64, 2).expect("draws");
+    assert_eq!(texture(64, 2).expect("draws"), first);
     let mut last = first;
-    for (renderer, size, count) in [(&few, 128, 2), (&few, 128, 3), (&more, 128, 3)] {
-        let next = buffer(renderer, size, count).expect("draws");
+    for (size, count) in [(128, 2), (128, 3)] {
+        let next = texture(size, count).expect("draws");
         assert_ne!(next, last, "{size} texels, {count} layers");
         last = next;
     }
-    assert!(matches!(buffer(&few, 1 << 20, 2), Err(Error::Size { .. })), "a map that no device holds");
+    assert!(matches!(texture(1 << 20, 2), Err(Error::Size { .. })), "a map that no device holds");
     let (largest, binding) =
         (gpu().capabilities.max_texture_size, gpu().device.limits().max_storage_buffer_binding_size);
     if 16 * u64::from(largest).pow(2) > binding {
-        match buffer(&few, largest, 4) {
+        match texture(largest, 4) {
             Err(Error::Size { what: "depth layers", max, .. }) => assert!(max >= 1024 && max < largest, "{max}"),
             other => panic!("4 maps of {largest} texels a side: {other:?}"),
         }

@@ -41,7 +41,7 @@ fn resources_are_kept_from_frame_to_frame_counted_and_shown() {
     use antumbra::gpu::texture::TextureDescription;
     let (gpu, mut resources) = (gpu(), Resources::default());
     let pipeline = gpu.compute_pipeline(&add_one(), "add_one").expect("composes");
-    let mut frame = |size: u32, resources: &mut Resources| {
+    let frame = |size: u32, resources: &mut Resources| {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let mut recorder = Recorder::new(gpu, &mut encoder, resources);
         let texel = TextureDescription::new([size; 2], wgpu::TextureFormat::R32Float, "made up");

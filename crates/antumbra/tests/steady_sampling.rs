@@ -2,7 +2,7 @@
 
 mod common;
 
-use antumbra::{ShadowFrustum, Technique};
+use antumbra::{ShadowFrustum, Shadows};
 use antumbra_scene::Scene;
 use common::{camera, cuboid, drawn, gpu, ground, light, scene, shadowed, submit, technique, truth};
 use pollster::block_on;
@@ -36,8 +36,8 @@ fn is_ground(scene: &Scene, pixel: usize) -> bool {
     !(0..40).any(|i| crosses(0.4 + 1.25 * i as f32 / 39.0))
 }
 
-fn maps(technique: &dyn Technique) -> f64 {
-    let figures = block_on(technique.stats(gpu())).unwrap();
+fn maps(shadows: &Shadows) -> f64 {
+    let figures = block_on(shadows.stats(gpu())).unwrap();
     figures.iter().find(|(name, _)| *name == "maps").unwrap().1
 }
 
@@ -60,10 +60,10 @@ fn shots(spec: &str) -> Vec<Shot> {
     let shot = |frame| {
         let scene = scene_of(frame);
         renderer.frame.casters = Arc::new(antumbra::scene::upload(gpu(), &scene).unwrap());
-        submit(|recorder| renderer.record_geometry(recorder)).unwrap();
+        submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap();
         let visibility = shadowed(&renderer, &mut shadow).unwrap();
         let truth = truth(&scene, SIZE, 1024);
-        Shot { visibility, maps: maps(&*shadow), truth: truth.visibility, valid: truth.valid }
+        Shot { visibility, maps: maps(&shadow), truth: truth.visibility, valid: truth.valid }
     };
     (0..FRAMES).map(shot).collect()
 }

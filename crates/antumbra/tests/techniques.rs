@@ -3,6 +3,8 @@
 
 mod common;
 
+use antumbra::Shadows;
+use antumbra::gpu::limits::Needs;
 use antumbra::scene::SceneRenderer;
 use antumbra::techniques::TECHNIQUES;
 use antumbra_scene::builtin::{self, BuiltinInfo};
@@ -122,11 +124,11 @@ fn every_technique_knows_what_its_shaders_take() {
         let gpu = antumbra::Gpu::from_host(all.device.clone(), all.queue.clone());
         let renderer = SceneRenderer::new(&gpu, &scene, [32, 32]).unwrap_or_else(|e| panic!("{}: {e}", scene.name));
         let spec: antumbra::Spec = quick(info).parse().unwrap_or_else(|e| panic!("{e}"));
-        let mut made = spec.make(&gpu).unwrap_or_else(|e| panic!("{}: {e}", info.name));
+        let mut shadows = Shadows::from_spec(&gpu, &spec).unwrap_or_else(|e| panic!("{}: {e}", info.name));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let recorded = renderer.record_shadow(&mut made, &mut antumbra::Recorder::new(&gpu, &mut encoder));
+        let recorded = shadows.record(&gpu, &mut encoder, &renderer.frame);
         recorded.unwrap_or_else(|e| panic!("{}: {e}", info.name));
-        let measured = gpu.needs().max(antumbra::gpu::shader::Needs::CORE);
+        let measured = gpu.needs().max(Needs::CORE);
         // Other adapters take other ways, which may need less.
         let is_known = if gpu.is_software() { measured == info.needs } else { measured.max(info.needs) == info.needs };
         if !is_known {

@@ -94,14 +94,20 @@ fn is_resource(declaration: &Declaration) -> bool {
     }
 }
 
-/// Names of the resources that a module and its imports declare under any feature, sorted.
+/// Names of the resources that a module, its imports and all modules that can stand in for a part declare under any
+/// feature, sorted.
 fn known_names(key: &ShaderKey) -> Vec<String> {
     let source_of = |module: &str| {
-        let stands_in = key.parts.iter().find(|(name, _)| *name == module).map_or(module, |(_, part)| part);
-        let known = SOURCES.iter().find(|(path, _)| path.strip_prefix("package::") == Some(stands_in));
+        let known = SOURCES.iter().find(|(path, _)| path.strip_prefix("package::") == Some(module));
         key.source.as_deref().filter(|_| module == key.module).or(known.map(|(_, text)| *text))
     };
-    let (mut names, mut seen, mut open) = (BTreeSet::new(), BTreeSet::new(), vec![key.module.to_owned()]);
+    let of_parts = SOURCES.iter().filter_map(|(path, _)| path.strip_prefix("package::")).filter(|path| {
+        let name = path.rsplit("::").next().unwrap_or_default();
+        key.parts.iter().any(|(part, _)| *part == name)
+    });
+    let given = key.parts.iter().map(|(_, module)| *module);
+    let mut open: Vec<String> = of_parts.chain(given).chain([key.module]).map(str::to_owned).collect();
+    let (mut names, mut seen) = (BTreeSet::new(), BTreeSet::new());
     while let Some(module) = open.pop() {
         let Some(text) = source_of(&module).filter(|_| seen.insert(module.clone())) else { continue };
         // Kernels of tests are indented.

@@ -34,9 +34,9 @@ fn jumps(spec: &str, scene_of: impl Fn(f32) -> Scene) -> Jumps {
     let mut shot = |i: usize| {
         let scene = scene_of(i as f32 / FRAMES as f32);
         renderer.frame.update(gpu(), View::of_camera(&scene.camera, SIZE), scene.light, frustum);
-        submit(|recorder| renderer.record_geometry(recorder)).unwrap_or_else(|e| panic!("{e}"));
+        submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{e}"));
         let [visibility, control] = [&mut shadow, &mut control]
-            .map(|technique| shadowed(&renderer, &mut **technique).unwrap_or_else(|e| panic!("{spec}: {e}")));
+            .map(|technique| shadowed(&renderer, technique).unwrap_or_else(|e| panic!("{spec}: {e}")));
         let mut truth = truth(&scene, SIZE, 256);
         // What many maps too find far from the truth is a pixel whose middle the rasteriser gives to another surface.
         let values = truth.visibility.iter().zip(&control);

@@ -77,7 +77,7 @@ fn a_refined_light_is_about_as_good_as_one_with_128_maps() {
         let uniform = compared(&fresh(&renderer, "uniform-sampling:map=256,samples=128"), &truth).average_error;
         let mut adaptive = technique("adaptive-sampling:map=256");
         let error = compared(&picture(&renderer, &mut adaptive), &truth).average_error;
-        let maps = figure(&*adaptive, "maps");
+        let maps = figure(&adaptive, "maps");
         println!("{spec}: error {error:.4} by {maps} maps, {uniform:.4} by 128 of fixed places");
         assert!(error < uniform + 0.01, "{spec}: error {error} by {maps} maps, {uniform} by 128 of fixed places");
     }
@@ -88,7 +88,7 @@ fn refined(size: Vec2, settings: &str) -> (Figures, u32) {
     let scene = hovering(size);
     let mut adaptive = technique(&format!("adaptive-sampling:map=256{settings}"));
     let found = picture(&seen(&scene), &mut adaptive);
-    (compared(&found, &truth(&scene, SIZE, 1024)), figure(&*adaptive, "maps"))
+    (compared(&found, &truth(&scene, SIZE, 1024)), figure(&adaptive, "maps"))
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn a_point_takes_one_map() {
     for settings in ["", ",filter=pcf", ",criterion=relative,filter=pcf"] {
         let mut adaptive = technique(&format!("adaptive-sampling:map=512{settings}"));
         let found = picture(&renderer, &mut adaptive);
-        assert_eq!(figure(&*adaptive, "maps"), 1, "{settings}");
+        assert_eq!(figure(&adaptive, "maps"), 1, "{settings}");
         // A pixel whose middle is within a texel of the shadow's edge may be wrong.
         let wrong = found.iter().zip(&truth.visibility).filter(|(a, b)| (*a - *b).abs() > 0.01).count();
         let figures = compared(&found, &truth);

@@ -9,7 +9,7 @@ mod identities;
 mod refinement;
 mod rest;
 
-use antumbra::Technique;
+use antumbra::Shadows;
 use antumbra::scene::SceneRenderer;
 use antumbra_scene::{RectLight, Scene};
 use common::{drawn, gpu, shadowed, technique};
@@ -25,8 +25,8 @@ fn seen(scene: &Scene) -> SceneRenderer {
 }
 
 /// A picture by a technique that may have been used before.
-fn picture(renderer: &SceneRenderer, technique: &mut dyn Technique) -> Vec<f32> {
-    shadowed(renderer, technique).unwrap_or_else(|e| panic!("{e}"))
+fn picture(renderer: &SceneRenderer, shadows: &mut Shadows) -> Vec<f32> {
+    shadowed(renderer, shadows).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A picture by a new instance.
@@ -35,8 +35,8 @@ fn fresh(renderer: &SceneRenderer, spec: &str) -> Vec<f32> {
 }
 
 /// A figure of the last frame.
-fn figure(technique: &dyn Technique, name: &str) -> u32 {
-    let figures = block_on(technique.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
+fn figure(shadows: &Shadows, name: &str) -> u32 {
+    let figures = block_on(shadows.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
     let found = figures.iter().find(|(n, _)| *n == name);
     found.unwrap_or_else(|| panic!("no `{name}` among {figures:?}")).1 as u32
 }

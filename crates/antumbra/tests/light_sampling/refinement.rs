@@ -16,7 +16,7 @@ fn a_budget_of_maps_is_kept_and_spent_once() {
         for budget in [4, 5, 8, 20, 63] {
             let mut adaptive = technique(&format!("adaptive-sampling:tolerance=0,map=128,maps={budget}"));
             let found = picture(&renderer, &mut adaptive);
-            let (maps, drawn) = (figure(&*adaptive, "maps"), figure(&*adaptive, "maps drawn"));
+            let (maps, drawn) = (figure(&adaptive, "maps"), figure(&adaptive, "maps drawn"));
             let error = compared(&found, &truth).average_error;
             println!("light of {size} m: {maps} maps of {budget}, {drawn} drawn, error {error:.4}");
             assert!(found.iter().all(|v| (0.0..=1.0).contains(v)), "{size}, {budget} maps: beyond [0, 1]");
@@ -34,7 +34,7 @@ fn a_budget_of_maps_is_kept_and_spent_once() {
 fn spent(renderer: &SceneRenderer, truth: &Reference, settings: &str) -> (Figures, u32) {
     let mut adaptive = technique(&format!("adaptive-sampling:map=256,{settings}"));
     let found = picture(renderer, &mut adaptive);
-    (compared(&found, truth), figure(&*adaptive, "maps"))
+    (compared(&found, truth), figure(&adaptive, "maps"))
 }
 
 #[test]
@@ -88,10 +88,10 @@ fn far_away_shadows_take_fewer_maps_unless_the_light_s_view_decides() {
         eyes.map(|eye| {
             let (light, frustum) = (renderer.frame.light, renderer.frame.frustum);
             renderer.frame.update(gpu(), View::of_camera(&eye, SIZE), light, frustum);
-            submit(|recorder| renderer.record_geometry(recorder)).unwrap_or_else(|e| panic!("{e}"));
+            submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{e}"));
             let mut adaptive = technique(&format!("adaptive-sampling:{settings}"));
             picture(&renderer, &mut adaptive);
-            figure(&*adaptive, "maps")
+            figure(&adaptive, "maps")
         })
     };
     for settings in ["tolerance=0.03", "criterion=relative", "criterion=absolute,gamma=0.1"] {

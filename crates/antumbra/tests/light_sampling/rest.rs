@@ -20,7 +20,7 @@ fn change(renderer: &mut SceneRenderer, camera: &Camera, light_shift: Vec3) {
     let (mut light, frustum) = (renderer.frame.light, renderer.frame.frustum);
     light.center += light_shift;
     renderer.frame.update(gpu(), View::of_camera(camera, SIZE), light, frustum);
-    submit(|recorder| renderer.record_geometry(recorder)).unwrap_or_else(|e| panic!("{e}"));
+    submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{e}"));
 }
 
 fn near() -> Camera {
@@ -41,7 +41,7 @@ fn maps_of_resting_casters_are_drawn_once() {
         let mut frame = |renderer: &SceneRenderer, what: &str| {
             let found = picture(renderer, &mut kept);
             assert_same(&found, &fresh(renderer, &spec), &format!("{settings}: {what}, a used instance and a new one"));
-            let (maps, drawn) = (figure(&*kept, "maps"), figure(&*kept, "maps drawn"));
+            let (maps, drawn) = (figure(&kept, "maps"), figure(&kept, "maps drawn"));
             println!("{settings}: {what}: {maps} maps, {drawn} drawn");
             (found, maps, drawn)
         };
@@ -75,7 +75,7 @@ fn fixed_samples_of_resting_casters_are_drawn_once() {
         let mut kept = technique(&spec);
         let mut frame = |renderer: &SceneRenderer, what: &str| {
             let found = picture(renderer, &mut kept);
-            let is_drawn = figure(&*kept, "maps drawn") > 0;
+            let is_drawn = figure(&kept, "maps drawn") > 0;
             assert_same(&found, &fresh(renderer, &spec), &format!("{way}: {what}, a used instance and a new one"));
             is_drawn
         };

@@ -14,7 +14,7 @@ use pollster::block_on;
 
 /// A built-in scene with its geometry buffer drawn.
 fn drawn(scene: &Scene, size: [u32; 2]) -> SceneRenderer {
-    let mut renderer = SceneRenderer::new(gpu(), scene, size).unwrap_or_else(|e| panic!("{e}"));
+    let renderer = SceneRenderer::new(gpu(), scene, size).unwrap_or_else(|e| panic!("{e}"));
     submit(|recorder| renderer.record_geometry(gpu(), recorder.encoder(), None));
     renderer
 }
