@@ -164,12 +164,13 @@ impl Rounds<'_> {
     /// Adds up the visibility of the pixels in penumbra through the tree's maps, each for its cell.
     pub fn evaluate_cells(&self, recorder: &mut Recorder, list: &PenumbraList) -> Result<(), Error> {
         let own = bindings! {
+            adaptive: &self.tree.uniform,
             light_samples: &self.maps.samples,
             light_maps: &self.maps.texture,
             entry_list: &self.tree.entries,
             penumbra_pixels: &list.buffer,
         };
-        let set = [&self.frame.bindings()[..], &self.tree.bindings(), own];
+        let set = [&self.frame.bindings()[..], own];
         recorder.compute(VISIBILITY_SUM, &self.pipelines.evaluate_cells, &set, Work::Indirect(&list.buffer, 0))
     }
 
