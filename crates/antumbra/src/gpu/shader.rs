@@ -232,7 +232,8 @@ mod tests {
         let own = "import package::shaders::frame::receiver_at;\nstruct Receiver { a: u32 }\nvar<storage, read_write> out: array<u32>;\n\
                    @compute @workgroup_size(1) fn run() {\n let r = receiver_at(vec2(0u), 0.5);\n out[0] = Receiver(u32(r.q)).a;\n}\n";
         let program = Program::compose(&ShaderKey::of_source(own)).unwrap_or_else(|e| panic!("{e}"));
-        let names: Vec<_> = program.slots(&["run"]).into_iter().map(|s| s.name).collect();
+        let mut names: Vec<_> = program.slots(&["run"]).into_iter().map(|s| s.name).collect();
+        names.sort();
         assert_eq!(names, ["frame", "geometry_normal", "out"]);
         let twice = "import package::shaders::frame::receiver_at;\nvar<storage, read_write> frame: array<f32>;\n\
                      @compute @workgroup_size(1) fn run() { frame[0] = receiver_at(vec2(0u), 0.5).q; }\n";

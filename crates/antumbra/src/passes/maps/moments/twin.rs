@@ -40,6 +40,7 @@ fn bounds(format: TexelFormat, pairs: &[[f32; 2]]) -> Vec<f32> {
     let input = buffer_of(gpu, "pairs", bytemuck::cast_slice(pairs), wgpu::BufferUsages::STORAGE);
     let output = storage_buffer(gpu, "bounds", u64::from(BLOCKS * BLOCKS) * 4);
     let store = "
+        import package::host::StorageTarget;
         import package::warp::stored;
         import package::shaders::depth_warp::Texel;
         import package::shaders::texel_format::encoded;

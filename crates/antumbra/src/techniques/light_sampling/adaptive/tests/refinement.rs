@@ -79,11 +79,13 @@ impl Refinement {
 
     /// Runs one workgroup of each shader with its round, on the tree alone.
     fn run(&self, steps: &[(&ComputePipeline, u32)]) {
+        let weigh = &*self.technique.pipelines.weigh;
         submit(|recorder| {
             steps.iter().try_for_each(|(pipeline, round)| {
                 let step = self.tree.rounds.at(*round);
-                let own = bindings! { entry_list: &self.tree.entries, plan_step: &step };
-                let set = [&self.tree.bindings()[..], own];
+                let entries = bindings! { entry_list: &self.tree.entries };
+                let entries = if std::ptr::eq(*pipeline, weigh) { entries } else { &[] };
+                let set = [&self.tree.bindings()[..], bindings! { plan_step: &step }, entries];
                 recorder.compute("refinement", pipeline, &set, Work::Groups([1, 1, 1]))
             })
         });
