@@ -20,7 +20,16 @@ static GPU: LazyLock<Gpu> = LazyLock::new(|| {
         max_storage_buffers_per_shader_stage: 16,
         ..wgpu::Limits::default()
     };
-    let (device, queue) = wgpu::Device::noop(&wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() });
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::NOOP,
+        // Checks of indirect arguments by wgpu's own shaders need alignments that this adapter does not have.
+        flags: wgpu::InstanceFlags::empty(),
+        backend_options: wgpu::BackendOptions { noop: wgpu::NoopBackendOptions::enabled(), ..Default::default() },
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let adapter = block_on(instance.request_adapter(&Default::default())).expect("always there");
+    let description = wgpu::DeviceDescriptor { required_limits: limits, ..Default::default() };
+    let (device, queue) = block_on(adapter.request_device(&description)).expect("within its limits");
     Gpu::from_host(device, queue)
 });
 

@@ -84,7 +84,7 @@ impl Refinement {
             steps.iter().try_for_each(|(pipeline, round)| {
                 let step = self.tree.rounds.at(*round);
                 let entries = bindings! { entry_list: &self.tree.entries };
-                let entries = if std::ptr::eq(*pipeline, weigh) { entries } else { &[] };
+                let entries = if std::ptr::eq(*pipeline, weigh) { &entries[..] } else { &[] };
                 let set = [&self.tree.bindings()[..], bindings! { plan_step: &step }, entries];
                 recorder.compute("refinement", pipeline, &set, Work::Groups([1, 1, 1]))
             })
