@@ -166,10 +166,10 @@ impl Linked {
     fn place(&self, key: &ShaderKey, offset: usize) -> Option<String> {
         let starts = ["fn ", "var<", "var ", "const ", "override ", "struct ", "alias "];
         let is_start = |line: &&str| {
-            let bare = line.trim_start_matches(|c| c == '@');
+            let bare = line.trim_start_matches('@');
             starts.iter().any(|s| bare.starts_with(s) || line.contains(&format!(") {s}")))
         };
-        let line = self.wgsl[..offset.min(self.wgsl.len())].lines().filter(is_start).next_back()?;
+        let line = self.wgsl[..offset.min(self.wgsl.len())].lines().rfind(is_start)?;
         let after = starts.iter().filter_map(|s| line.find(s).map(|at| (at, &line[at + s.len()..]))).min()?.1;
         let after = after.split_once("> ").filter(|_| line.contains("var<")).map_or(after, |(_, rest)| rest);
         let mangled = after.split(|c: char| !(c.is_alphanumeric() || c == '_')).next()?;
