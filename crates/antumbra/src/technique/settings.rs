@@ -49,7 +49,7 @@ pub enum Kind {
     },
 }
 
-/// A settings struct made by [`settings!`](crate::technique::settings!).
+/// A settings struct made by `settings!`.
 pub trait Settings: Serialize + DeserializeOwned + Default {
     /// Its keys, in the order of declaration.
     const FIELDS: &'static [Setting];

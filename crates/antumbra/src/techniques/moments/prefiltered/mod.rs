@@ -76,7 +76,7 @@ pub trait HasFiltering {
 }
 
 /// Declares the settings of a prefiltered technique: those of filtering, then its own, as in
-/// [`settings!`](crate::technique::settings!).
+/// `settings!`.
 #[macro_export]
 macro_rules! prefilter_settings {
     ($(#[$meta:meta])* $vis:vis struct $name:ident { $($own:tt)* }) => {
