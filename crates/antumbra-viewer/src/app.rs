@@ -1,11 +1,11 @@
-//! The program around the controls.
+//! The viewer's program: events, commands, saving, lost devices.
 
-use crate::commands::{Answer, Command, State, apply};
-use crate::desk::Desk;
+use crate::commands::{Command, Reply, State, apply};
 use crate::open::{Chosen, EXTENSIONS, Source};
 use crate::save::{self, Saving};
 use crate::session::Session;
-use crate::ui::{self, Memory, Save, Wishes};
+use crate::ui::{self, Save, UiActions, UiState};
+use crate::view_state::ViewState;
 use crate::{here, light};
 use antumbra::Gpu;
 use antumbra::techniques::TECHNIQUES;
@@ -18,60 +18,60 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
 use web_time::{Duration, Instant};
 
-/// What outlives a lost device.
-pub struct Kept {
+/// State that outlives a lost device.
+pub struct PersistentState {
     /// What the user has chosen.
-    pub desk: Desk,
+    pub view_state: ViewState,
     /// The scene to open first.
     pub first: Option<Source>,
-    /// Commands that wait, each with where its answer goes.
-    pub commands: Arc<Mutex<VecDeque<Asked>>>,
-    /// GPU errors that nobody expected.
+    /// Queued commands.
+    pub commands: Arc<Mutex<VecDeque<PendingCommand>>>,
+    /// Unexpected GPU errors.
     pub faults: Arc<Mutex<Vec<String>>>,
-    /// Times that the device was lost.
+    /// Number of lost devices.
     pub lost: u32,
-    /// True if the window shall open again.
+    /// True if the window opens again.
     pub again: bool,
 }
 
-/// A command and its asker.
-pub struct Asked {
-    /// What is asked.
+/// A command with its reply function.
+pub struct PendingCommand {
+    /// The command.
     pub command: Command,
-    /// Takes the answer.
-    pub answer: Box<dyn FnOnce(Answer) + Send>,
+    /// Receives the reply.
+    pub answer: Box<dyn FnOnce(Reply) + Send>,
 }
 
-/// Where what outlives the device lies while the device lives.
-pub type Keep = Arc<Mutex<Option<Kept>>>;
+/// Slot for the persistent state while no app holds it.
+pub type SharedState = Arc<Mutex<Option<PersistentState>>>;
 
 /// The program.
 pub struct App {
-    kept: Kept,
-    keep: Keep,
+    kept: PersistentState,
+    keep: SharedState,
     session: Session,
-    memory: Memory,
+    memory: UiState,
     render: RenderState,
     lost: Arc<AtomicBool>,
     dropped: Vec<egui::DroppedFileHandle>,
     saving: Option<(Saving, Vec<Vec<u8>>)>,
     screenshot: Option<Screenshot>,
-    /// Frames that nothing has been under way.
+    /// Number of idle frames in a row.
     idle: u32,
-    /// A file dialog that is open.
+    /// The open file dialog.
     choosing: Option<Receiver<Chosen>>,
-    /// The frame before, and the longest time between two, while somebody watches.
+    /// Time of the last frame and the longest time between two, during [`Command::Watch`].
     watched: Option<(Instant, Duration)>,
 }
 
-type Answerer = Box<dyn FnOnce(Answer) + Send>;
+type ReplyTo = Box<dyn FnOnce(Reply) + Send>;
 
-/// A picture of the window that is on its way, where it goes, and who waits for it.
-type Screenshot = (Receiver<Arc<egui::ColorImage>>, Option<PathBuf>, Option<Answerer>);
+/// A pending screenshot, its path, and its reply function.
+type Screenshot = (Receiver<Arc<egui::ColorImage>>, Option<PathBuf>, Option<ReplyTo>);
 
 impl App {
-    /// On the device that eframe has opened.
-    pub fn new(context: &eframe::CreationContext, keep: Keep) -> Result<App, String> {
+    /// An app on eframe's device.
+    pub fn new(context: &eframe::CreationContext, keep: SharedState) -> Result<App, String> {
         let kept = keep.lock().ok().and_then(|mut k| k.take()).ok_or("the viewer is open already")?;
         let render =
             context.wgpu_render_state.clone().ok_or("there is no graphics adapter that draws to this window")?;
@@ -84,7 +84,7 @@ impl App {
             kept,
             keep,
             session,
-            memory: Memory::default(),
+            memory: UiState::default(),
             render,
             lost,
             dropped: Vec::new(),
@@ -94,7 +94,7 @@ impl App {
             choosing: None,
             watched: None,
         };
-        let source = app.kept.first.take().or_else(|| app.kept.desk.open.clone().map(Source::Again));
+        let source = app.kept.first.take().or_else(|| app.kept.view_state.open.clone().map(Source::Again));
         if let Some(source) = source {
             app.session.open(source);
         }
@@ -104,22 +104,24 @@ impl App {
         Ok(app)
     }
 
-    /// True once the device is gone. It tells only those who ask.
+    /// True once the device is lost. A poll delivers the callback.
     fn is_lost(&self) -> bool {
-        // Whether it is there is heard by the callback.
+        // The callback sets the flag.
         let _ = self.session.gpu.device.poll(wgpu::PollType::Poll);
         self.lost.load(Ordering::Relaxed)
     }
 
-    /// What is on the screen, as text.
+    /// Asks for the [`State`].
     fn state(&self, pixels_per_point: f32) -> State {
-        let (desk, session) = (&self.kept.desk, &self.session);
+        let (view_state, session) = (&self.kept.view_state, &self.session);
         let halves = &session.halves;
-        let handles =
-            self.memory.area.map_or_else(Vec::new, |area| light::handles(&desk.light, &ui::screen(desk, area)));
+        let handles = self
+            .memory
+            .area
+            .map_or_else(Vec::new, |area| light::handles(&view_state.light, &ui::screen(view_state, area)));
         let error = |h: &crate::session::Half| h.measured.figures.as_ref()?.as_ref().ok().map(|f| f.average_error);
         State {
-            scene: desk.open.as_ref().filter(|_| session.stage.is_some()).map(|o| o.source.clone()),
+            scene: view_state.open.as_ref().filter(|_| session.loaded.is_some()).map(|o| o.source.clone()),
             drawn: [0, 1].map(|i| halves[i].made.as_ref().map(|m| m.0.text())),
             failed: [0, 1].map(|i| halves[i].failed.as_ref().map(|f| f.1.clone())),
             average_error: [0, 1].map(|i| error(&halves[i])),
@@ -127,15 +129,15 @@ impl App {
             faults: self.kept.faults.lock().map_or_else(|_| Vec::new(), |f| f.clone()),
             frames: session.drawn,
             lost: self.kept.lost,
-            picture: session.canvas.as_ref().map(|c| c.size),
-            inner: [0, 1].map(|i| {
+            image: session.targets.as_ref().map(|c| c.size),
+            debug_views: [0, 1].map(|i| {
                 let made = halves[i].made.iter();
                 made.flat_map(|m| m.1.debug_views()).map(|p| p.name).collect()
             }),
-            camera: (desk.camera.eye.to_array(), desk.camera.target.to_array()),
-            light: (desk.light.center.to_array(), desk.light.size.to_array()),
+            camera: (view_state.camera.eye.to_array(), view_state.camera.target.to_array()),
+            light: (view_state.light.center.to_array(), view_state.light.size.to_array()),
             handles: handles.into_iter().map(|(h, p)| (format!("{h:?}"), (p * pixels_per_point).to_array())).collect(),
-            truth: session.truth.as_ref().and_then(|t| t.picture.lock().ok().map(|p| p.done())),
+            truth: session.truth.as_ref().and_then(|t| t.image.lock().ok().map(|p| p.done())),
             truth_says: session.truth.as_ref().map(|t| t.progress().to_string()),
             milliseconds: [0, 1].map(|i| halves[i].times.median_total()),
             longest_frame: self.watched.map(|(_, longest)| 1000.0 * longest.as_secs_f64()),
@@ -146,9 +148,9 @@ impl App {
         }
     }
 
-    /// Does what was asked from outside, in order; what has to wait holds up what comes after it.
-    fn obey(&mut self, ctx: &egui::Context) {
-        let is_idle = self.session.is_idle(&self.kept.desk) && self.saving.is_none();
+    /// Runs queued commands in order; a waiting command blocks those after it.
+    fn run_commands(&mut self, ctx: &egui::Context) {
+        let is_idle = self.session.is_idle(&self.kept.view_state) && self.saving.is_none();
         self.idle = if is_idle { self.idle + 1 } else { 0 };
         while self.screenshot.is_none() {
             let Some(next) = self.kept.commands.lock().ok().and_then(|mut q| q.pop_front()) else { return };
@@ -160,14 +162,14 @@ impl App {
                 return;
             }
             self.idle = 0;
-            self.obey_one(ctx, next);
+            self.run_command(ctx, next);
             ctx.request_repaint();
         }
     }
 
-    fn obey_one(&mut self, ctx: &egui::Context, asked: Asked) {
-        let mut answer = Answer::default();
-        match apply(asked.command, &mut self.kept.desk) {
+    fn run_command(&mut self, ctx: &egui::Context, asked: PendingCommand) {
+        let mut answer = Reply::default();
+        match apply(asked.command, &mut self.kept.view_state) {
             Err(error) => answer.error = Some(error),
             Ok(None | Some(Command::Wait)) => {}
             Ok(Some(Command::Open(source))) => self.session.open(Source::Argument(source)),
@@ -180,7 +182,7 @@ impl App {
             Ok(Some(Command::Zoom(zoom))) => ctx.set_zoom_factor(zoom.clamp(0.3, 4.0)),
             Ok(Some(Command::Close)) => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Ok(Some(Command::SaveScene(path))) => {
-                let text = save::scene_text(&self.kept.desk, &self.session);
+                let text = save::scene_text(&self.kept.view_state, &self.session);
                 answer.error = text.and_then(|t| here::write(&path, t.as_bytes())).err();
             }
             Ok(Some(Command::Screenshot(path))) => {
@@ -192,18 +194,18 @@ impl App {
         (asked.answer)(answer);
     }
 
-    fn take_screenshot(&mut self, ctx: &egui::Context, path: Option<PathBuf>, answer: Option<Answerer>) {
+    fn take_screenshot(&mut self, ctx: &egui::Context, path: Option<PathBuf>, answer: Option<ReplyTo>) {
         let (send, receive) = channel();
         let woken = ctx.clone();
         ctx.request_screenshot(move |image| {
-            // Nobody waits where the window has closed.
+            // The window may have closed.
             let _ = send.send(image);
             woken.request_repaint();
         });
         self.screenshot = Some((receive, path, answer));
     }
 
-    /// Writes a screenshot and a saved picture once they have come.
+    /// Writes a screenshot and a saved image once they have arrived.
     fn finish_saving(&mut self, ctx: &egui::Context) {
         if let Some(image) = self.screenshot.as_ref().and_then(|(receive, ..)| receive.try_recv().ok()) {
             let (_, path, answer) = self.screenshot.take().unwrap_or_else(|| unreachable!("just looked at"));
@@ -215,7 +217,7 @@ impl App {
                 None => here::keep("antumbra-window", "png", &png),
             });
             match answer {
-                Some(answer) => answer(Answer { error: kept.err(), state: None }),
+                Some(answer) => answer(Reply { error: kept.err(), state: None }),
                 None => self.say_kept(kept),
             }
         } else if self.screenshot.is_some() {
@@ -237,27 +239,27 @@ impl App {
         }
     }
 
-    fn grant(&mut self, ctx: &egui::Context, wishes: Wishes) {
-        if let Some(source) = wishes.open {
+    fn apply_actions(&mut self, ctx: &egui::Context, actions: UiActions) {
+        if let Some(source) = actions.open {
             self.session.open(source);
         }
-        if wishes.choose {
+        if actions.choose {
             self.choose_files(ctx);
         }
-        let desk = &self.kept.desk;
-        match wishes.save {
+        let view_state = &self.kept.view_state;
+        match actions.save {
             None => {}
-            Some(Save::Picture) => {
-                self.saving = Saving::start(desk, &self.session).map(|saving| (saving, Vec::new()));
+            Some(Save::Image) => {
+                self.saving = Saving::start(view_state, &self.session).map(|saving| (saving, Vec::new()));
             }
             Some(Save::Window) => self.take_screenshot(ctx, None, None),
             Some(Save::Scene) => {
-                let kept = save::scene_text(desk, &self.session)
+                let kept = save::scene_text(view_state, &self.session)
                     .and_then(|text| here::keep("antumbra-scene", "toml", text.as_bytes()));
                 self.say_kept(kept);
             }
             Some(Save::Spec(half)) => {
-                let text = desk.choices[half].text();
+                let text = view_state.choices[half].text();
                 ctx.copy_text(text.clone());
                 self.memory.notices.done(format!("copied: {text}"));
             }
@@ -265,18 +267,19 @@ impl App {
         }
     }
 
-    /// The command line that draws what is seen; from a scene file of its own if camera or light were moved.
+    /// The command line that draws the same image, from a new scene file if camera or light were moved.
     fn copy_command(&mut self, ctx: &egui::Context, half: usize) {
-        let desk = &self.kept.desk;
-        let (Some(open), Some(canvas)) = (&desk.open, &self.session.canvas) else { return };
-        let scene = if desk.is_as_opened() {
+        let view_state = &self.kept.view_state;
+        let (Some(open), Some(targets)) = (&view_state.open, &self.session.targets) else { return };
+        let scene = if view_state.is_as_opened() {
             Ok(open.source.clone())
         } else {
-            save::scene_text(desk, &self.session).and_then(|text| here::keep("antumbra-scene", "toml", text.as_bytes()))
+            save::scene_text(view_state, &self.session)
+                .and_then(|text| here::keep("antumbra-scene", "toml", text.as_bytes()))
         };
         match scene {
             Ok(scene) => {
-                let command = crate::export::command(&scene, &desk.choices[half].text(), canvas.size);
+                let command = crate::export::command(&scene, &view_state.choices[half].text(), targets.size);
                 ctx.copy_text(command.clone());
                 self.memory.notices.done(format!("copied: {command}"));
             }
@@ -284,7 +287,7 @@ impl App {
         }
     }
 
-    /// Opens the file dialog. A page never learns that its browser has not opened one, so there it is asked for again.
+    /// Opens the file dialog. A page never learns whether its browser opened one, so it may ask again.
     fn choose_files(&mut self, ctx: &egui::Context) {
         if self.choosing.is_none() || cfg!(target_arch = "wasm32") {
             let woken = ctx.clone();
@@ -294,20 +297,20 @@ impl App {
         }
     }
 
-    /// Opens what was chosen in the file dialog.
+    /// Opens the files that were chosen in the file dialog.
     fn take_chosen(&mut self) {
         let Some(chosen) = self.choosing.as_ref().map(Receiver::try_recv) else { return };
         match chosen {
             Err(TryRecvError::Empty) => return,
             Ok(Ok(files)) if !files.is_empty() => self.session.open(Source::Dropped(files)),
-            // It was closed.
+            // The dialog was closed.
             Ok(Ok(_)) | Err(TryRecvError::Disconnected) => {}
             Ok(Err(why)) => self.memory.notices.error(why),
         }
         self.choosing = None;
     }
 
-    /// Notes how long the frame before took, while somebody watches.
+    /// Measures the time of the last frame during [`Command::Watch`].
     fn watch(&mut self, ctx: &egui::Context) {
         if let Some((last, longest)) = &mut self.watched {
             *longest = (*longest).max(last.elapsed());
@@ -316,7 +319,7 @@ impl App {
         }
     }
 
-    /// Opens what was dropped on the window.
+    /// Opens files that were dropped on the window.
     fn take_dropped(&mut self, ctx: &egui::Context) {
         let files = ctx.input(|i| i.raw.dropped_files.clone());
         if !files.is_empty() {
@@ -335,14 +338,14 @@ impl eframe::App for App {
             here::restart(ctx);
             return;
         }
-        for message in self.session.work(&mut self.kept.desk) {
+        for message in self.session.work(&mut self.kept.view_state) {
             if message != "cancelled" {
                 self.memory.notices.error(message);
             }
         }
         self.watch(ctx);
         self.take_chosen();
-        self.obey(ctx);
+        self.run_commands(ctx);
     }
 
     fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
@@ -351,8 +354,8 @@ impl eframe::App for App {
         }
         let ctx = ui.ctx().clone();
         self.take_dropped(&ctx);
-        let wishes = ui::show(ui, &self.render, &mut self.kept.desk, &mut self.session, &mut self.memory);
-        self.grant(&ctx, wishes);
+        let actions = ui::show(ui, &self.render, &mut self.kept.view_state, &mut self.session, &mut self.memory);
+        self.apply_actions(&ctx, actions);
         self.finish_saving(&ctx);
         let faults: Vec<String> = self.kept.faults.lock().map_or_else(|_| Vec::new(), |f| f.clone());
         for fault in faults.iter().skip(self.memory.faults_shown) {
@@ -360,7 +363,7 @@ impl eframe::App for App {
         }
         self.memory.faults_shown = faults.len();
         if self.is_lost() {
-            // egui's renderer panics where it has something to draw and no device: it gets nothing.
+            // egui's renderer panics without a device: give it nothing to draw.
             ctx.graphics_mut(|layers| *layers = Default::default());
             ctx.request_repaint();
         }
@@ -368,11 +371,11 @@ impl eframe::App for App {
 }
 
 impl Drop for App {
-    /// Hands back what outlives the device.
+    /// Returns the persistent state.
     fn drop(&mut self) {
         let lost = self.is_lost();
-        let outlives = Kept {
-            desk: self.kept.desk.clone(),
+        let outlives = PersistentState {
+            view_state: self.kept.view_state.clone(),
             first: None,
             commands: self.kept.commands.clone(),
             faults: self.kept.faults.clone(),
@@ -385,8 +388,8 @@ impl Drop for App {
     }
 }
 
-/// Collects errors that nobody waits for, and notes when the device goes away.
-fn watch(gpu: &Gpu, ctx: &egui::Context, kept: &Kept, lost: &Arc<AtomicBool>) {
+/// Collects uncaptured errors, and records a lost device.
+fn watch(gpu: &Gpu, ctx: &egui::Context, kept: &PersistentState, lost: &Arc<AtomicBool>) {
     let (flag, woken) = (lost.clone(), ctx.clone());
     gpu.device.set_device_lost_callback(move |_, _| {
         flag.store(true, Ordering::Relaxed);
@@ -394,7 +397,7 @@ fn watch(gpu: &Gpu, ctx: &egui::Context, kept: &Kept, lost: &Arc<AtomicBool>) {
     });
     let (faults, lost, woken) = (kept.faults.clone(), lost.clone(), ctx.clone());
     gpu.device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-        // What fails because the device is gone is no fault.
+        // Errors after the loss of the device are expected.
         if !lost.load(Ordering::Relaxed)
             && let Ok(mut faults) = faults.lock()
         {

@@ -1,11 +1,11 @@
-//! Moving the camera as modelling tools do: orbit, pan, zoom, fly.
+//! Camera navigation: orbit, pan, zoom, fly.
 
 use antumbra_scene::{Aabb, Camera};
 use glam::{Quat, Vec2, Vec3};
 
-/// Steepest look up or down, as the sine of the angle over the horizon.
+/// Steepest view up or down: sine of the elevation.
 const STEEPEST: f32 = 0.995;
-/// Nearest that the eye comes to its target, in radii of the scene.
+/// Smallest distance of the eye from its target, in radii of the scene.
 const NEAREST: f32 = 1e-3;
 
 /// Turns the eye around the target: radians to the right and up.
@@ -20,18 +20,18 @@ pub fn look(camera: &mut Camera, angles: Vec2) {
     camera.target = camera.eye + offset;
 }
 
-/// `offset` turned about the up direction and about the camera's right, without passing over a pole.
+/// `offset` rotated about the up direction and the camera's right, not beyond a pole.
 fn turned(offset: Vec3, camera: &Camera, yaw: f32, pitch: f32) -> Vec3 {
     let up = camera.up.normalize();
     let right = camera.basis().0;
     let pitched = Quat::from_axis_angle(right, -pitch) * offset;
     let sine = |v: Vec3| v.normalize().dot(up).abs();
-    // A camera that looks straight down, as some scenes ask for, may still leave that direction.
+    // A scene's camera that looks straight down can still leave that direction.
     let allowed = sine(pitched) < STEEPEST || sine(pitched) < sine(offset);
     Quat::from_axis_angle(up, yaw) * if allowed { pitched } else { offset }
 }
 
-/// Moves eye and target across the view; `delta` in heights of the picture at the target's distance, right and up.
+/// Moves eye and target across the view; `delta`, right and up, in image heights at the target's distance.
 pub fn pan(camera: &mut Camera, delta: Vec2) {
     let (right, up, _) = camera.basis();
     let height = 2.0 * (camera.eye - camera.target).length() * (0.5 * camera.fov_y_deg.to_radians()).tan();
@@ -55,7 +55,7 @@ pub fn fly(camera: &mut Camera, metres: Vec3) {
     camera.target += shift;
 }
 
-/// Widens the depth range to what is needed now; it never gets narrower than the scene's own `range`.
+/// Widens the depth range to the current need; it is never narrower than the scene's `range`.
 pub fn fit_depth(camera: &mut Camera, range: [f32; 2], bounds: &Aabb) {
     let forward = camera.basis().2;
     let reach = bounds.corners().iter().map(|c| (*c - camera.eye).dot(forward)).fold(0.0f32, f32::max);
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn panning_by_the_pictures_height_moves_by_what_it_shows() {
+    fn panning_by_the_images_height_moves_by_what_it_shows() {
         let mut c = camera();
         pan(&mut c, Vec2::new(0.0, 1.0));
         // 90 degrees at 5 metres: 10 metres high.

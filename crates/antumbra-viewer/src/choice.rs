@@ -1,4 +1,4 @@
-//! A technique with its settings as a person changes them one by one, and as a SPEC.
+//! A technique with editable settings, and its SPEC.
 
 use antumbra::technique::settings::{Kind, Setting};
 use antumbra::techniques::spec::find;
@@ -21,28 +21,28 @@ impl PartialEq for Choice {
 }
 
 impl Choice {
-    /// A technique as it comes.
+    /// A technique with its defaults.
     pub fn new(technique: &'static TechniqueInfo) -> Choice {
         Choice { technique, settings: defaults(technique, &Map::new()) }
     }
 
-    /// What a SPEC asks for.
+    /// The choice of a SPEC.
     pub fn of_spec(spec: &Spec) -> Choice {
         let settings = spec.settings.as_object().cloned().unwrap_or_default();
         Choice { technique: spec.technique, settings }
     }
 
-    /// The technique of this name as it comes.
+    /// The technique of this name with its defaults.
     pub fn named(name: &str) -> Result<Choice, antumbra::error::SpecError> {
         find(name).map(Choice::new)
     }
 
-    /// As the library takes it.
+    /// The library's SPEC.
     pub fn spec(&self) -> Spec {
         Spec { technique: self.technique, settings: Value::Object(self.settings.clone()), text: self.text() }
     }
 
-    /// The shortest SPEC that means the same.
+    /// The shortest equal SPEC.
     pub fn text(&self) -> String {
         let presets: Map<String, Value> = self.presets().map(|s| (s.key.to_owned(), self.value(s).clone())).collect();
         let (plain, base) = (defaults(self.technique, &Map::new()), defaults(self.technique, &presets));
@@ -65,7 +65,7 @@ impl Choice {
         self.settings.get(setting.key).unwrap_or(&Value::Null)
     }
 
-    /// Sets a value; a preset sets what belongs to it too.
+    /// Sets a value; a preset also sets the settings that follow it.
     pub fn set(&mut self, setting: &Setting, value: Value) {
         if self.is_preset(setting) {
             self.settings = defaults(self.technique, &Map::from_iter([(setting.key.to_owned(), value)]));
@@ -74,7 +74,7 @@ impl Choice {
         }
     }
 
-    /// True if the setting is one that others follow.
+    /// True if the setting is a preset.
     pub fn is_preset(&self, setting: &Setting) -> bool {
         let Kind::Choice { options } = setting.kind else { return false };
         let others = |option: &str| {
@@ -89,7 +89,7 @@ impl Choice {
         self.technique.settings.iter().filter(|s| self.is_preset(s))
     }
 
-    /// What `setting` goes back to.
+    /// The default of `setting`.
     pub fn default_of(&self, setting: &Setting) -> Value {
         let presets: Map<String, Value> = self.presets().map(|s| (s.key.to_owned(), self.value(s).clone())).collect();
         let base = if self.is_preset(setting) { Map::new() } else { presets };
@@ -101,7 +101,7 @@ fn defaults(technique: &TechniqueInfo, given: &Map<String, Value>) -> Map<String
     (technique.defaults)(given).as_object().cloned().unwrap_or_default()
 }
 
-/// A value as it stands in a SPEC. Settings are 32-bit numbers, which JSON holds with more digits than they have.
+/// A value in the form of a SPEC. JSON would print 32-bit numbers with surplus digits.
 fn word(value: &Value) -> String {
     match value {
         Value::String(text) => text.clone(),
@@ -111,7 +111,7 @@ fn word(value: &Value) -> String {
     }
 }
 
-/// A point as it stands in a SPEC.
+/// A point in the form of a SPEC.
 fn point(value: &Value) -> String {
     value.as_array().into_iter().flatten().map(word).collect::<Vec<_>>().join(" ")
 }

@@ -1,63 +1,63 @@
-//! Commands from outside, a JSON object each: for tests, and for programs that drive the viewer.
+//! Remote control by JSON objects, for tests and for programs that drive the viewer.
 //!
-//! They come on stdin, a line each, with `antumbra view --commands`; each is answered by a line on stdout.
+//! `antumbra view --commands` reads one command per line from stdin and writes one reply per line to stdout.
 
 use crate::choice::Choice;
-use crate::desk::{Compare, Desk, Inside};
-use crate::inspect::Part;
+use crate::inspector::Part;
 use crate::show::Show;
+use crate::view_state::{Compare, DebugSelection, ViewState};
 use antumbra::Spec;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
-/// What can be asked for.
+/// A command.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Command {
-    /// A scene as on the command line.
+    /// Opens a scene, named as on the command line.
     Open(String),
-    /// A file, as if it were dropped on the window.
+    /// Opens a file as if it were dropped on the window.
     Drop(PathBuf),
-    /// What `Open …` does: the file dialog.
+    /// Shows the file dialog, like the button `Open …`.
     Choose,
-    /// The technique of a half, as a SPEC.
+    /// Sets the technique of a half.
     Technique {
         /// 0 left, 1 right.
         half: usize,
-        /// As on the command line.
+        /// SPEC, as on the command line.
         spec: String,
     },
-    /// What stands beside what.
+    /// Sets the content of the halves.
     Compare(Compare),
-    /// What is shown.
+    /// Sets the quantity that is shown.
     Show(Show),
-    /// Turning occluders or not.
+    /// Turns occluders, or stops them.
     Turn(bool),
-    /// Where the halves meet, as a part of the width.
+    /// Moves the divider between the halves: a fraction of the width.
     Divider(f32),
-    /// Pixels of the picture for one of the screen.
+    /// Sets the resolution: image pixels per screen pixel, along each axis.
     Resolution(f32),
-    /// Looks into the technique of a half; nothing closes the window.
-    Inside(Option<usize>),
-    /// Which inner picture is looked at, by its name, and which of its channels.
-    Inner(String, u32),
+    /// Opens the debug views of a half, or closes them.
+    DebugViews(Option<usize>),
+    /// Selects a debug view by name, and its channel.
+    DebugView(String, u32),
     /// Opens or closes the help.
     Help(bool),
-    /// Answered once nothing is under way.
+    /// Waits until no work is pending.
     Wait,
-    /// What is on the screen, as text.
+    /// Asks for the [`State`].
     State,
-    /// The whole window as a PNG file.
+    /// Saves the whole window as a PNG file.
     Screenshot(PathBuf),
-    /// What `Save` in the menu writes, to this file.
+    /// Saves the scene file, as the menu `Save` does.
     SaveScene(PathBuf),
-    /// Takes all messages off the screen.
+    /// Closes all messages.
     Dismiss,
-    /// Loses the device, as drivers do.
+    /// Destroys the device, as after a driver reset.
     LoseDevice,
-    /// Another number of pixels for a point.
+    /// Sets the zoom of the controls.
     Zoom(f32),
-    /// Draws the controls frame after frame and measures the longest time from one to the next, or no longer.
+    /// Draws every frame and measures the longest time between two frames, or stops.
     Watch(bool),
     /// Closes the window.
     Close,
@@ -65,8 +65,8 @@ pub enum Command {
 
 /// The answer to a command.
 #[derive(Debug, Default, Serialize)]
-pub struct Answer {
-    /// What went wrong with the command itself.
+pub struct Reply {
+    /// The error of the command itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error: Option<String>,
     /// For [`Command::State`].
@@ -74,65 +74,67 @@ pub struct Answer {
     pub state: Option<State>,
 }
 
-/// What is on the screen.
+/// State of the viewer.
 #[derive(Debug, Serialize)]
 pub struct State {
-    /// The scene's argument.
+    /// Argument that opened the scene.
     pub scene: Option<String>,
-    /// SPECs that are drawn, left and right.
+    /// SPECs of the techniques that are drawn, left and right.
     pub drawn: [Option<String>; 2],
-    /// Why they are not.
+    /// Errors of techniques that are not drawn.
     pub failed: [Option<String>; 2],
-    /// Average error of each, where the truth is wanted.
+    /// Average errors, while the truth is needed.
     pub average_error: [Option<f64>; 2],
     /// Messages of errors.
     pub errors: Vec<String>,
-    /// GPU errors that nobody expected: there are none unless there is a bug.
+    /// Unexpected GPU errors: each is a bug.
     pub faults: Vec<String>,
-    /// Frames that were drawn.
+    /// Number of drawn frames.
     pub frames: u64,
-    /// Times that the device was lost.
+    /// Number of lost devices.
     pub lost: u32,
-    /// Size of the picture, pixels.
-    pub picture: Option<[u32; 2]>,
-    /// Names of the inner pictures of each technique.
-    pub inner: [Vec<&'static str>; 2],
-    /// Where the camera is, and what it looks at.
+    /// Image size in pixels.
+    pub image: Option<[u32; 2]>,
+    /// Names of each technique's debug views.
+    pub debug_views: [Vec<&'static str>; 2],
+    /// Eye and target of the camera.
     pub camera: ([f32; 3], [f32; 3]),
     /// Centre and size of the light.
     pub light: ([f32; 3], [f32; 2]),
-    /// Places of the light's handles in the window, pixels.
+    /// Positions of the light's handles in the window, pixels.
     pub handles: Vec<(String, [f32; 2])>,
-    /// The part of the truth that is traced.
+    /// Progress of the truth, 0 to 1.
     pub truth: Option<f32>,
-    /// How far the truth is, as it is said on the screen.
+    /// Progress of the truth as text.
     pub truth_says: Option<String>,
-    /// Milliseconds on the GPU of each.
+    /// GPU time of each technique, milliseconds.
     pub milliseconds: [f64; 2],
-    /// The longest time between two frames, milliseconds, since [`Command::Watch`].
+    /// Longest time between two frames since [`Command::Watch`], milliseconds.
     pub longest_frame: Option<f64>,
-    /// Techniques that cannot be chosen here, and why.
+    /// Techniques that this adapter cannot run, with the reason.
     pub refused: Vec<(&'static str, String)>,
 }
 
-/// Applies a command that only changes what is on the desk; others come back.
-pub fn apply(command: Command, desk: &mut Desk) -> Result<Option<Command>, String> {
+/// Applies a command that only changes the view state; returns others.
+pub fn apply(command: Command, view_state: &mut ViewState) -> Result<Option<Command>, String> {
     match command {
         Command::Technique { half, spec } => {
-            let choice = desk.choices.get_mut(half).ok_or("half: 0 is left, 1 is right")?;
+            let choice = view_state.choices.get_mut(half).ok_or("half: 0 is left, 1 is right")?;
             *choice = Choice::of_spec(&spec.parse::<Spec>().map_err(|e| e.to_string())?);
         }
-        Command::Compare(compare) => desk.compare = compare,
-        Command::Show(show) => desk.show = show,
-        Command::Turn(turning) => desk.turning = turning,
-        Command::Divider(divider) => desk.divider = divider.clamp(0.02, 0.98),
-        Command::Resolution(resolution) => desk.resolution = Some(resolution.clamp(0.05, 2.0)),
-        Command::Inside(half) => desk.inside = half.map(|half| Inside { half, ..Inside::default() }),
-        Command::Inner(name, channel) => {
-            let inside = desk.inside.as_mut().ok_or("nobody looks inside")?;
-            (inside.name, inside.part) = (name, Part { channel, ..Part::default() });
+        Command::Compare(compare) => view_state.compare = compare,
+        Command::Show(show) => view_state.show = show,
+        Command::Turn(turning) => view_state.turning = turning,
+        Command::Divider(divider) => view_state.divider = divider.clamp(0.02, 0.98),
+        Command::Resolution(resolution) => view_state.resolution = Some(resolution.clamp(0.05, 2.0)),
+        Command::DebugViews(half) => {
+            view_state.debug = half.map(|half| DebugSelection { half, ..DebugSelection::default() })
         }
-        Command::Help(help) => desk.help = help,
+        Command::DebugView(name, channel) => {
+            let debug = view_state.debug.as_mut().ok_or("no debug views are open")?;
+            (debug.name, debug.part) = (name, Part { channel, ..Part::default() });
+        }
+        Command::Help(help) => view_state.help = help,
         other => return Ok(Some(other)),
     }
     Ok(None)
@@ -144,22 +146,22 @@ mod tests {
 
     #[test]
     fn commands_are_read() {
-        let mut desk = Desk::new(&[]);
+        let mut view_state = ViewState::new(&[]);
         for line in [
             r#"{"compare":"truth"}"#,
             r#"{"show":"error"}"#,
             r#"{"technique":{"half":0,"spec":"pcss:map=512"}}"#,
-            r#"{"inside":1}"#,
+            r#"{"debug_views":1}"#,
             r#"{"turn":true}"#,
         ] {
             let command = serde_json::from_str(line).unwrap_or_else(|e| panic!("{line}: {e}"));
-            assert!(apply(command, &mut desk).unwrap().is_none(), "{line}");
+            assert!(apply(command, &mut view_state).unwrap().is_none(), "{line}");
         }
-        assert_eq!((desk.compare, desk.show, desk.turning), (Compare::Truth, Show::Error, true));
-        assert_eq!(desk.choices[0].text(), "pcss:map=512");
+        assert_eq!((view_state.compare, view_state.show, view_state.turning), (Compare::Truth, Show::Error, true));
+        assert_eq!(view_state.choices[0].text(), "pcss:map=512");
         let wait: Command = serde_json::from_str("\"wait\"").unwrap();
-        assert!(matches!(apply(wait, &mut desk), Ok(Some(Command::Wait))));
+        assert!(matches!(apply(wait, &mut view_state), Ok(Some(Command::Wait))));
         let bad = Command::Technique { half: 0, spec: "pcff".to_owned() };
-        assert!(apply(bad, &mut desk).unwrap_err().contains("did you mean"));
+        assert!(apply(bad, &mut view_state).unwrap_err().contains("did you mean"));
     }
 }

@@ -1,12 +1,12 @@
-//! What can be taken away: the scene file, the SPEC, and the command line that gives the same picture.
+//! Exports: scene file, SPEC, and the command line of the same image.
 
 use antumbra_scene::{Camera, RectLight, Scene};
 use glam::Vec3;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// A scene file of what is open, seen as it is now. `source` is the scene's argument, as on the command line; the file's
-/// text is needed where that is a scene file itself.
+/// A scene file of the open scene with its current camera and light. `source` is its command-line argument; the
+/// text is needed if that is a scene file itself.
 pub fn scene_file(
     source: &str,
     text: Option<&str>,
@@ -27,7 +27,7 @@ pub fn scene_file(
     toml::to_string(&file).map_err(|e| format!("the scene cannot be written as a file: {e}"))
 }
 
-/// A model with the ground that was put under it, or a built-in scene.
+/// A model with its added ground, or a built-in scene.
 fn meshes_of(source: &str, scene: &Scene) -> Vec<Value> {
     let entry = match source.strip_prefix("builtin:") {
         Some(spec) => ("builtin", spec.to_owned()),
@@ -50,7 +50,7 @@ fn meshes_of(source: &str, scene: &Scene) -> Vec<Value> {
     meshes
 }
 
-/// The keys of another scene file, with paths that hold from everywhere.
+/// The keys of another scene file, with absolute paths.
 fn meshes_of_file(source: &str, text: &str) -> Result<Table, String> {
     let read = |e: &dyn std::fmt::Display| format!("{source} cannot be read again: {e}");
     let is_json = Path::new(source).extension().is_some_and(|e| e.eq_ignore_ascii_case("json"));
@@ -68,7 +68,7 @@ fn meshes_of_file(source: &str, text: &str) -> Result<Table, String> {
 }
 
 fn absolute(path: &Path) -> String {
-    // A path that is not there any more is written as it was given.
+    // A missing path is written as given.
     std::path::absolute(path).map_or_else(|_| path.display().to_string(), |p| p.display().to_string())
 }
 
@@ -100,18 +100,18 @@ fn vector(v: Vec3) -> Value {
     Value::Array(v.to_array().map(number).to_vec())
 }
 
-/// The shortest number that is read as the same 32-bit one.
+/// The shortest decimal of a 32-bit number.
 fn number(v: f32) -> Value {
     Value::Float(v.to_string().parse().unwrap_or(f64::from(v)))
 }
 
-/// The command that draws the same picture.
+/// The command that draws the same image.
 pub fn command(scene: &str, spec: &str, size: [u32; 2]) -> String {
     let [width, height] = size;
-    format!("antumbra render {} -t {} --size {width}x{height} -o picture.png", quoted(scene), quoted(spec))
+    format!("antumbra render {} -t {} --size {width}x{height} -o image.png", quoted(scene), quoted(spec))
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:=,+@".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
@@ -121,7 +121,7 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// An 8-bit RGBA picture as a PNG file.
+/// An 8-bit RGBA image as a PNG file.
 pub fn png(size: [u32; 2], rgba: &[u8]) -> Result<Vec<u8>, image::ImageError> {
     let mut bytes = Vec::new();
     let encoder = image::codecs::png::PngEncoder::new(&mut bytes);
@@ -176,7 +176,7 @@ mod tests {
     fn words_are_quoted_for_the_shell() {
         assert_eq!(
             command("a b.toml", "pcss:map=512", [4, 3]),
-            "antumbra render 'a b.toml' -t pcss:map=512 --size 4x3 -o picture.png"
+            "antumbra render 'a b.toml' -t pcss:map=512 --size 4x3 -o image.png"
         );
         assert_eq!(quoted("it's"), r"'it'\''s'");
     }

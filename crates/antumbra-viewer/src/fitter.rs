@@ -1,17 +1,17 @@
-//! Fitting the shadow frustum: at once for small scenes, in the background for large ones.
+//! Fitting of the shadow frustum: at once for small scenes, in the background for large ones.
 
 use crate::job::{Job, Slice};
 use antumbra::input::frustum::FrustumFit;
 use antumbra::{RectLight, ShadowFrustum, View};
 use antumbra_scene::{Instance, Scene};
 
-/// Triangles that are fitted within a frame.
+/// Largest number of triangles that is fitted within a frame.
 const AT_ONCE: usize = 60_000;
 
-/// What a frustum was fitted to; the number counts poses.
+/// Inputs of a fit; the number is the pose.
 pub type Fit = (View, RectLight, u64);
 
-/// Keeps the last frustum, and a copy of the scene to measure.
+/// The last frustum, and a copy of the scene for the job.
 pub struct Fitter {
     triangles: usize,
     scene: Option<Box<Scene>>,
@@ -20,13 +20,13 @@ pub struct Fitter {
 }
 
 impl Fitter {
-    /// For this scene.
+    /// A fitter for this scene.
     pub fn new(scene: &Scene) -> Fitter {
         let copy = Some(Box::new(scene.clone()));
         Fitter { triangles: scene.triangle_count(), scene: copy, fitted: None, job: None }
     }
 
-    /// The frustum for `what`, with the scene's instances where they stand now; none while it is looked for.
+    /// The frustum for `what` and the current instances; none while the job runs.
     pub fn fit(
         &mut self,
         what: Fit,
@@ -41,7 +41,7 @@ impl Fitter {
         {
             return Some(*frustum);
         }
-        // None while a job has it: the next is begun when that one ends.
+        // None while a job has it: the next starts after that one.
         let mut scene = self.scene.take()?;
         scene.light = what.1;
         scene.instances.clone_from_slice(instances);

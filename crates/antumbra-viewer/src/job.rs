@@ -1,4 +1,4 @@
-//! Long work off the frame: on threads of its own, or in slices between the frames where there are none.
+//! Jobs: long work on threads, or in slices between frames on platforms without threads.
 
 use crate::here;
 use std::future::Future;
@@ -7,16 +7,16 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
 use web_time::{Duration, Instant};
 
-/// Work under way. Dropping it asks it to stop; what it still finds is thrown away.
+/// A running job. Dropping it cancels the work.
 pub struct Job<T> {
-    /// What is done, for people.
+    /// Name of the work, for people.
     pub title: String,
     started: Instant,
     status: Status,
     receiver: Receiver<Result<T, Died>>,
 }
 
-/// What the work says of itself, and whether it shall go on.
+/// Progress of a job, and whether its result is still wanted.
 #[derive(Clone, Default)]
 pub struct Status {
     step: Arc<Mutex<String>>,
@@ -24,14 +24,14 @@ pub struct Status {
 }
 
 impl Status {
-    /// Says what comes next, and lets it be seen; false once nobody waits for it any more.
+    /// Sets the current step and yields to the frame; false once the job is cancelled.
     pub async fn step(&self, what: &str) -> bool {
         what.clone_into(&mut self.step.lock().expect("only text is moved under the lock"));
         here::yield_to_frame().await;
         !self.is_cancelled()
     }
 
-    /// True once nobody waits for the result.
+    /// True once the job is cancelled.
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::Relaxed)
     }
@@ -48,7 +48,7 @@ impl<T: Send + 'static> Job<T> {
         let status = Status::default();
         let own = status.clone();
         let done = move |result| {
-            // Nobody waits for it any more: that is what cancelling means.
+            // A cancelled job has no receiver.
             let _ = send.send(result);
             wake();
         };
@@ -58,7 +58,7 @@ impl<T: Send + 'static> Job<T> {
 }
 
 impl<T> Job<T> {
-    /// What came out, once.
+    /// Takes the result.
     pub fn poll(&self) -> Option<Result<T, Died>> {
         match self.receiver.try_recv() {
             Ok(result) => Some(result),
@@ -67,7 +67,7 @@ impl<T> Job<T> {
         }
     }
 
-    /// The step that it is at.
+    /// The current step.
     pub fn step(&self) -> String {
         self.status.step.lock().expect("only text is moved under the lock").clone()
     }
@@ -89,10 +89,10 @@ impl<T> Drop for Job<T> {
 #[error("the work broke off, which is a bug in antumbra, please report it: {0}")]
 pub struct Died(pub String);
 
-/// How long work goes on before the frame has its turn, where both share a thread.
+/// Length of a slice, where jobs and frames share a thread.
 const SLICE: Duration = Duration::from_millis(10);
 
-/// A stretch of work that ends when a frame has to be drawn.
+/// A slice of work between two frames.
 pub struct Slice(Instant);
 
 impl Default for Slice {
@@ -102,8 +102,8 @@ impl Default for Slice {
 }
 
 impl Slice {
-    /// Runs work that comes in pieces to its end, with frames in between; false if it is given up because `is_wanted` says
-    /// so.
+    /// Runs an iterator to its end, with frames in between; false if `is_wanted`
+    /// returns false.
     pub async fn run(&mut self, pieces: &mut impl Iterator<Item = ()>, is_wanted: impl Fn() -> bool) -> bool {
         while pieces.next().is_some() {
             self.breathe().await;
@@ -114,8 +114,8 @@ impl Slice {
         true
     }
 
-    /// To be called every few milliseconds: gives way to the frame once the slice is used up. On a thread of its own
-    /// the work goes right on.
+    /// Yields to the frame once the slice is used up; call it every few milliseconds. On a thread of its own
+    /// it does nothing.
     pub async fn breathe(&mut self) {
         if self.0.elapsed() > SLICE {
             here::yield_to_frame().await;

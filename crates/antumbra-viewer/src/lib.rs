@@ -2,7 +2,7 @@
 //!
 //! [`run`] opens the window. [`app`] is the program, [`ui`] its controls, [`session`] what goes on behind them: scenes are
 //! opened ([`open`]), techniques compiled, the truth traced ([`truth`]) and errors measured ([`figures`]) in the background
-//! ([`job`]). [`desk`] is what the user has chosen; it outlives the graphics device, which may be lost at any time.
+//! ([`job`]). [`view_state`] is what the user has chosen; it outlives the graphics device, which may be lost at any time.
 //! [`commands`] drive all of it from outside, for tests.
 #![deny(missing_docs)]
 
@@ -10,22 +10,23 @@ pub mod app;
 pub mod camera;
 pub mod choice;
 pub mod commands;
-pub mod desk;
 pub mod export;
-pub mod figures;
 mod fitter;
-pub mod inspect;
+pub mod inspector;
 pub mod job;
 pub mod light;
+pub mod loaded_scene;
+pub mod metrics;
 pub mod open;
 mod readback;
+pub mod render_targets;
 mod save;
 pub mod session;
 pub mod show;
-pub mod stage;
 pub mod times;
 pub mod truth;
 pub mod ui;
+pub mod view_state;
 
 #[cfg(not(target_arch = "wasm32"))]
 mod native;

@@ -1,32 +1,32 @@
-//! The light in the scene: where its handles are, and what dragging one does.
+//! Handles of the light: positions, and the effect of dragging.
 
 use antumbra::View;
 use antumbra_scene::RectLight;
 use glam::{Vec2, Vec3};
 
-/// What can be taken hold of.
+/// A handle of the light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Handle {
-    /// The middle: moves the light across the view.
+    /// The centre: moves the light parallel to the image.
     Move,
     /// An arrow: moves the light along x, y or z.
     Along(usize),
-    /// The middle of an edge: makes the light wider or narrower; +1 and -1 are the two edges.
+    /// The middle of an edge: changes the width; +1 and -1 are the two edges.
     Width(i8),
-    /// The same, higher or lower.
+    /// The middle of an edge: changes the height.
     Height(i8),
-    /// The point that it faces: turns the light.
+    /// The target: turns the light.
     Aim,
 }
 
-/// Length of the arrows, and how far size handles stand off the edges, in points of the screen.
+/// Length of the arrows and offset of size handles from the edges, points.
 const ARROW: f32 = 58.0;
 const OFFSET: f32 = 9.0;
 
-/// The picture on the screen, for going between points in the world and on it.
+/// Projection between world and screen.
 #[derive(Clone, Copy, Debug)]
 pub struct Screen {
-    /// Camera of the picture.
+    /// Camera of the image.
     pub view: View,
     /// Upper left corner, in points.
     pub min: Vec2,
@@ -35,14 +35,14 @@ pub struct Screen {
 }
 
 impl Screen {
-    /// Where a point of the world is seen; none behind the camera.
+    /// The screen position of a world position; none behind the camera.
     pub fn project(&self, p: Vec3) -> Option<Vec2> {
         let clip = self.view.clip_from_world() * p.extend(1.0);
         let ndc = clip.truncate().truncate() / clip.w;
         (clip.w > 1e-6 && ndc.is_finite()).then(|| self.min + (ndc * Vec2::new(0.5, -0.5) + 0.5) * self.size)
     }
 
-    /// Unit vector of the ray through a point of the screen; it starts at the eye.
+    /// Direction of the ray from the eye through a screen position.
     pub fn ray(&self, at: Vec2) -> Vec3 {
         let ndc = ((at - self.min) / self.size - 0.5) * Vec2::new(2.0, -2.0);
         let c = self.view.clip_from_view;
@@ -50,7 +50,7 @@ impl Screen {
         (self.view.view_from_world.inverse().transform_vector3(in_view)).normalize()
     }
 
-    /// Metres that a point of the screen covers at `p`.
+    /// Metres per screen point at `p`.
     pub fn metres_per_point(&self, p: Vec3) -> f32 {
         let depth = -self.view.view_from_world.transform_point3(p).z;
         2.0 * depth.max(1e-6) / (self.view.clip_from_view.y_axis.y * self.size.y)
@@ -66,17 +66,17 @@ impl Screen {
         eye + ray * ((p - eye).dot(normal) / ray.dot(normal).max(1e-6))
     }
 
-    /// How far along the line through `p` the point nearest to the ray is.
+    /// Distance along the line through `p` to the position nearest to the ray.
     fn along_line(&self, at: Vec2, p: Vec3, direction: Vec3) -> Option<f32> {
         let (ray, between) = (self.ray(at), self.view.eye() - p);
         let b = ray.dot(direction);
         let denominator = 1.0 - b * b;
-        // A line that is seen from its end has no length on the screen.
+        // A line towards the eye has no length on the screen.
         (denominator > 1e-3).then(|| (between.dot(direction) - b * between.dot(ray)) / denominator)
     }
 }
 
-/// All handles with their places on the screen; those out of sight are left out.
+/// Visible handles with their screen positions.
 pub fn handles(light: &RectLight, screen: &Screen) -> Vec<(Handle, Vec2)> {
     let (right, up, _) = light.basis();
     let metres = screen.metres_per_point(light.center);
@@ -91,11 +91,11 @@ pub fn handles(light: &RectLight, screen: &Screen) -> Vec<(Handle, Vec2)> {
     let arrows = Vec3::AXES.into_iter().enumerate();
     let arrows = arrows.map(|(i, axis)| (Handle::Along(i), light.center + axis * ARROW * metres));
     let all = [(Handle::Aim, light.target), (Handle::Move, light.center)];
-    // The last is on top: the middle and the edges matter more than the arrows where they overlap.
+    // Later handles are on top: centre and edges before arrows.
     arrows.chain(all).chain(sides).filter_map(|(h, p)| Some((h, screen.project(p)?))).collect()
 }
 
-/// The light after its `handle` was dragged from one point of the screen to another, starting from `light`.
+/// The light after a drag of `handle` between two screen positions.
 pub fn dragged(light: &RectLight, handle: Handle, screen: &Screen, start: Vec2, at: Vec2, largest: f32) -> RectLight {
     let (right, up, _) = light.basis();
     let along = |direction: Vec3| {
@@ -116,7 +116,7 @@ pub fn dragged(light: &RectLight, handle: Handle, screen: &Screen, start: Vec2, 
     }
 }
 
-/// The light turned to a point.
+/// The light turned to a target.
 pub fn aimed(light: &RectLight, target: Vec3) -> RectLight {
     let forward = target - light.center;
     if forward.length() < 1e-4 {
@@ -126,24 +126,24 @@ pub fn aimed(light: &RectLight, target: Vec3) -> RectLight {
     RectLight { target, up, ..*light }
 }
 
-/// The light turned around its target: radians about the world's up and over the horizon.
+/// The light after an orbit about its target: radians of azimuth and elevation.
 pub fn swung(light: &RectLight, angles: Vec2) -> RectLight {
     let (azimuth, elevation, distance) = placed(light);
     at(light, azimuth + angles.x, elevation + angles.y, distance)
 }
 
-/// Where it stands seen from its target: radians from +Z towards +X, radians over the horizon, metres.
+/// Position relative to the target: azimuth from +Z towards +X and elevation in radians, distance in metres.
 pub fn placed(light: &RectLight) -> (f32, f32, f32) {
     let from = light.center - light.target;
     (from.x.atan2(from.z), from.y.atan2(from.x.hypot(from.z)), from.length())
 }
 
-/// The light at such a place.
+/// The light at that relative position.
 pub fn at(light: &RectLight, azimuth: f32, elevation: f32, distance: f32) -> RectLight {
     let elevation = elevation.clamp(0.02, 1.565);
     let horizontal = elevation.cos();
     let from = Vec3::new(azimuth.sin() * horizontal, elevation.sin(), azimuth.cos() * horizontal);
-    // Turned as a whole, so that its edges keep their place to the line of sight.
+    // Rotated as a whole, so its edges keep their angle to the line of sight.
     let old = (light.center - light.target).normalize();
     let turn = glam::Quat::from_rotation_arc(old, from);
     RectLight { center: light.target + from * distance, up: turn * light.up, ..*light }

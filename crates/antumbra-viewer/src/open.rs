@@ -1,9 +1,9 @@
 //! Opening a scene in the background: a built-in one or a file.
 
-use crate::desk::Open;
 use crate::here;
 use crate::job::{Job, Slice};
-use crate::stage::Stage;
+use crate::loaded_scene::LoadedScene;
+use crate::view_state::OpenScene;
 use antumbra::Gpu;
 use antumbra::scene::Arrangement;
 use antumbra_scene::{ReadFile, load_from};
@@ -11,20 +11,20 @@ use eframe::egui;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What is to be opened.
+/// A request to open a scene.
 pub enum Source {
     /// As on the command line: a path (on a page, an address) or `builtin:NAME`.
     Argument(String),
-    /// Files that were dropped: one that is opened, and those that it may refer to.
+    /// Dropped files: the scene or model, and files that it may refer to.
     Dropped(Vec<egui::DroppedFileHandle>),
-    /// A scene that was open before, and its argument: the device was lost.
-    Again(Open),
+    /// The scene that was open when the device was lost.
+    Again(OpenScene),
 }
 
-/// What a scene can be in.
+/// File extensions of scenes and models.
 pub const EXTENSIONS: [&str; 6] = ["glb", "gltf", "obj", "ply", "toml", "json"];
 
-/// What came of a file dialog: files, none where it was closed, or why there is no dialog.
+/// Result of a file dialog: files, none if it was closed, or the reason why there is no dialog.
 pub type Chosen = Result<Vec<egui::DroppedFileHandle>, String>;
 
 /// Loads a scene and puts it on the GPU.
@@ -33,7 +33,7 @@ pub fn start(
     source: Source,
     pose: u64,
     wake: impl Fn() + Clone + Send + 'static,
-) -> Job<Result<(Open, Stage), String>> {
+) -> Job<Result<(OpenScene, LoadedScene), String>> {
     let gpu = gpu.clone();
     let title = match &source {
         Source::Argument(name) => name.clone(),
@@ -55,13 +55,13 @@ pub fn start(
         Slice::default().run(&mut arrangement, || true).await;
         let arranged = arrangement.finish();
         say("Putting it on the GPU").await?;
-        let stage = gpu.checked(|| Stage::new(&gpu, scene, arranged, pose)).await.map_err(|e| e.to_string())?;
+        let loaded = gpu.checked(|| LoadedScene::new(&gpu, scene, arranged, pose)).await.map_err(|e| e.to_string())?;
         say("Ready").await?;
-        Ok((open, stage))
+        Ok((open, loaded))
     })
 }
 
-async fn read(source: Source) -> Result<Open, String> {
+async fn read(source: Source) -> Result<OpenScene, String> {
     match source {
         Source::Again(open) => Ok(open),
         Source::Argument(name) if name.starts_with("builtin:") => from_files(&name, &mut |_| unreachable!("no file")),
@@ -73,16 +73,16 @@ async fn read(source: Source) -> Result<Open, String> {
     }
 }
 
-/// What the argument `name` opens, with the bytes that `read` gives.
-pub fn from_files(name: &str, read: &mut ReadFile) -> Result<Open, String> {
+/// Reads the scene `name`; `read` gives the bytes of files.
+pub fn from_files(name: &str, read: &mut ReadFile) -> Result<OpenScene, String> {
     let scene = load_from(name, read).map_err(|e| e.to_string())?;
     let is_file = !name.starts_with("builtin:") && is_scene_file(name);
     let bytes = if is_file { read(name).ok() } else { None };
     let text = bytes.and_then(|b| String::from_utf8(b).ok());
-    Ok(Open { source: name.to_owned(), text, scene: Arc::new(scene) })
+    Ok(OpenScene { source: name.to_owned(), text, scene: Arc::new(scene) })
 }
 
-/// The file among those dropped that refers to the others: a scene file, else a model, else the first.
+/// The dropped file that refers to the others: a scene file, else a model, else the first.
 fn chief(files: &[egui::DroppedFileHandle]) -> Option<&Path> {
     let rank = |path: &&Path| match extension(&path.to_string_lossy()).as_str() {
         "toml" | "json" => 0,
@@ -92,7 +92,7 @@ fn chief(files: &[egui::DroppedFileHandle]) -> Option<&Path> {
     files.iter().map(|f| f.path()).min_by_key(rank)
 }
 
-/// True of scene files, false of models.
+/// True for scene files, false for models.
 pub fn is_scene_file(name: &str) -> bool {
     extension(name) == "toml" || extension(name) == "json"
 }
@@ -101,7 +101,7 @@ fn extension(name: &str) -> String {
     Path::new(name).extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase())
 }
 
-/// 1234567 as 1,234,567.
+/// Digit groups: 1234567 is `1,234,567`.
 pub fn thousands(count: usize) -> String {
     let digits = count.to_string();
     let lead = digits.len() % 3;

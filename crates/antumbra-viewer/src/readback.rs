@@ -1,10 +1,10 @@
-//! Values from the GPU without waiting for it.
+//! Async readback of values.
 
 use antumbra::Gpu;
 use antumbra::gpu::texture::Texture;
 use std::sync::mpsc::{Receiver, channel};
 
-/// A texture of four bytes a texel, or a buffer, on its way to the CPU.
+/// A texture of four bytes per texel, or a buffer, in transfer to the CPU.
 pub struct Readback {
     size: [u32; 2],
     row: u32,
@@ -13,7 +13,7 @@ pub struct Readback {
 }
 
 impl Readback {
-    /// Copies what is in the texture after all work that was submitted before.
+    /// Copies a texture after all submitted work.
     pub fn start(gpu: &Gpu, texture: &Texture) -> Readback {
         let size = texture.texture.size();
         let row = (size.width * 4).next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
@@ -47,13 +47,13 @@ impl Readback {
         gpu.queue.submit([encoder.finish()]);
         let (send, ready) = channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // Nobody waits for a picture that has changed meanwhile.
+            // The image may have changed meanwhile.
             let _ = send.send(result);
         });
         Readback { size, row, buffer, ready }
     }
 
-    /// The bytes once they have come, rows tightly packed, and none at all where the device went away; `None` before.
+    /// The bytes, rows tightly packed; no bytes if the device was lost; `None` while the transfer runs.
     pub fn poll(&self) -> Option<Vec<u8>> {
         let result = self.ready.try_recv().ok()?;
         let mapped = result.ok().and_then(|()| self.buffer.get_mapped_range(..).ok());

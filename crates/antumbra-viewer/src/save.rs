@@ -1,11 +1,11 @@
-//! What is taken away, as the bytes of files.
+//! Content of saved files.
 
-use crate::desk::{Compare, Desk};
 use crate::export;
 use crate::readback::Readback;
 use crate::session::Session;
+use crate::view_state::{Compare, ViewState};
 
-/// The pictures of both halves on their way to a file.
+/// Images of both halves in readback.
 pub struct Saving {
     halves: Vec<Readback>,
     size: [u32; 2],
@@ -13,19 +13,19 @@ pub struct Saving {
 }
 
 impl Saving {
-    /// Asks for what is shown now, without what is written over it.
-    pub fn start(desk: &Desk, session: &Session) -> Option<Saving> {
-        let canvas = session.canvas.as_ref()?;
-        let count = if desk.compare == Compare::One { 1 } else { 2 };
-        let read = |half: &crate::stage::Half| Readback::start(&session.gpu, &half.image);
+    /// Starts the readback of the displayed images, without overlays.
+    pub fn start(view_state: &ViewState, session: &Session) -> Option<Saving> {
+        let targets = session.targets.as_ref()?;
+        let count = if view_state.compare == Compare::One { 1 } else { 2 };
+        let read = |half: &crate::render_targets::Half| Readback::start(&session.gpu, &half.image);
         Some(Saving {
-            halves: canvas.halves[..count].iter().map(read).collect(),
-            size: canvas.size,
-            divider: if count == 1 { canvas.size[0] } else { (canvas.size[0] as f32 * desk.divider) as u32 },
+            halves: targets.halves[..count].iter().map(read).collect(),
+            size: targets.size,
+            divider: if count == 1 { targets.size[0] } else { (targets.size[0] as f32 * view_state.divider) as u32 },
         })
     }
 
-    /// The picture as a PNG file, once its parts have come.
+    /// The PNG file, once its parts have arrived.
     pub fn poll(&mut self, parts: &mut Vec<Vec<u8>>) -> Option<Result<Vec<u8>, String>> {
         while let Some(next) = self.halves.get(parts.len()) {
             parts.push(next.poll()?);
@@ -33,7 +33,7 @@ impl Saving {
         let row = self.size[0] as usize * 4;
         let whole = parts.iter().all(|p| p.len() == row * self.size[1] as usize);
         if !whole {
-            return Some(Err("the device went away before the picture was read".to_owned()));
+            return Some(Err("the device went away before the image was read".to_owned()));
         }
         let cut = self.divider as usize * 4;
         let rows = (0..self.size[1] as usize).map(|y| y * row);
@@ -44,14 +44,14 @@ impl Saving {
     }
 }
 
-/// The text of a scene file of what is on the desk.
-pub fn scene_text(desk: &Desk, session: &Session) -> Result<String, String> {
-    let open = desk.open.as_ref().ok_or("no scene is open")?;
-    let size = session.canvas.as_ref().map_or([768; 2], |c| c.size);
+/// The text of a scene file of the current view.
+pub fn scene_text(view_state: &ViewState, session: &Session) -> Result<String, String> {
+    let open = view_state.open.as_ref().ok_or("no scene is open")?;
+    let size = session.targets.as_ref().map_or([768; 2], |c| c.size);
     let text = open.text.as_deref();
-    let file = export::scene_file(&open.source, text, &open.scene, &desk.camera, &desk.light, size)?;
-    let turned = desk.angle.to_degrees();
-    let note = if desk.angle == 0.0 {
+    let file = export::scene_file(&open.source, text, &open.scene, &view_state.camera, &view_state.light, size)?;
+    let turned = view_state.angle.to_degrees();
+    let note = if view_state.angle == 0.0 {
         String::new()
     } else {
         format!("# The occluders were turned by {turned:.1} degrees, which a scene file cannot say.\n")

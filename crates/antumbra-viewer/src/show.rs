@@ -1,16 +1,16 @@
-//! What is shown of a half: the shaded picture, the visibility, or its error.
+//! The displayed quantity: shaded image, visibility, or error.
 
 use antumbra::Gpu;
 use antumbra::gpu::texture::{Texture, TextureDescription};
 use antumbra_metrics::{HEAT_SCALE, color_bar};
 
-/// What a picture shows.
+/// Displayed quantity.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Show {
     /// Shaded.
     #[default]
-    Picture,
+    Image,
     /// The visible fraction of the light as grey.
     Visibility,
     /// The difference from the truth in colours.
@@ -80,7 +80,7 @@ impl Shown {
     }
 }
 
-/// Written out, because a pipeline that overrides a branch away would leave the truth out of its own.
+/// Explicit layout: an automatic one would omit the truth where an override removes the branch.
 fn layout(gpu: &Gpu) -> wgpu::PipelineLayout {
     let read = wgpu::BindingType::Texture {
         sample_type: wgpu::TextureSampleType::Float { filterable: false },

@@ -3,13 +3,13 @@
 use antumbra::gpu::timer::PassTime;
 use std::collections::VecDeque;
 
-/// Frames that are kept.
+/// Number of kept frames.
 const KEPT: usize = 160;
 
 /// The times of one technique.
 #[derive(Default)]
 pub struct Times {
-    /// Labels in the order in which they first came.
+    /// Labels in order of first appearance.
     pub passes: Vec<String>,
     /// For each frame the milliseconds of each pass.
     pub frames: VecDeque<Vec<f64>>,
@@ -18,7 +18,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// Takes a frame.
+    /// Adds a frame.
     pub fn push(&mut self, times: &[PassTime]) {
         self.untimed = times.iter().any(|(_, ms)| ms.is_none());
         for (name, _) in times {
@@ -72,4 +72,9 @@ mod tests {
         }
         assert!(times.frames.len() == KEPT && times.untimed);
     }
+}
+
+/// Sum of the milliseconds of all passes; none if one has none.
+pub fn total(times: &[PassTime]) -> Option<f64> {
+    times.iter().map(|(_, ms)| *ms).sum()
 }

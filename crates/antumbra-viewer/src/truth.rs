@@ -1,4 +1,4 @@
-//! The ray-traced truth, refined in the background: from a coarse picture to the very one that `antumbra reference` traces.
+//! The ray-traced truth, refined in the background up to the image that `antumbra reference` traces.
 
 use crate::here;
 use crate::job::{Died, Slice};
@@ -7,14 +7,14 @@ use antumbra_scene::{Camera, RectLight, Scene};
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 use std::sync::{Arc, Mutex, OnceLock};
 
-/// Shadow rays and primary rays of a pixel, level after level. Each level replaces the one before; all but the last
-/// together take a third of its time. The last is what the command line traces.
+/// Shadow rays and primary rays per pixel of each level. A level replaces the last; all but the final one
+/// together take a third of its time. The final one equals the command line's.
 const LEVELS: [[u32; 2]; 4] = [[16, 1], [64, 4], [256, 16], [1024, 16]];
 
-/// Pixels that are traced at a stretch.
+/// Pixels per slice.
 const RUN: u32 = 16;
 
-/// What a truth is the truth about.
+/// The inputs of a truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Question {
     /// Camera.
@@ -23,34 +23,34 @@ pub struct Question {
     pub light: RectLight,
     /// Pixels.
     pub size: [u32; 2],
-    /// Changes when occluders have moved or another scene is open.
+    /// Number of the pose and scene.
     pub pose: u64,
 }
 
-/// The picture so far. Lists are row-major, row 0 on top.
-pub struct Picture {
+/// The current image, row-major, row 0 on top.
+pub struct TracedImage {
     /// Pixels.
     pub size: [u32; 2],
     /// Visible fraction of the light.
     pub visibility: Vec<f32>,
-    /// True where errors are measured: traced already, and a surface that faces the light.
+    /// True where errors are measured: a traced surface that faces the light.
     pub valid: Vec<bool>,
-    /// Levels that each row has.
+    /// Finished levels of each row.
     rows: Vec<u8>,
-    /// Counts rows that have come in.
+    /// Number of finished rows.
     pub version: u64,
-    /// Why no more will come in.
+    /// Error that stopped the tracing.
     pub died: Option<Died>,
 }
 
-impl Picture {
-    fn empty(size: [u32; 2]) -> Picture {
+impl TracedImage {
+    fn empty(size: [u32; 2]) -> TracedImage {
         let count = size[0] as usize * size[1] as usize;
         let rows = vec![0; size[1] as usize];
-        Picture { size, visibility: vec![1.0; count], valid: vec![false; count], rows, version: 0, died: None }
+        TracedImage { size, visibility: vec![1.0; count], valid: vec![false; count], rows, version: 0, died: None }
     }
 
-    /// Puts a row in; rows beside it that have nothing yet show it too, and do not count.
+    /// Stores a row, also into empty neighbouring rows, which do not count.
     fn put(&mut self, y: usize, level: u8, pixels: &[Pixel]) {
         let width = self.size[0] as usize;
         for (x, pixel) in pixels.iter().enumerate() {
@@ -70,12 +70,12 @@ impl Picture {
         self.rows.iter().all(|&r| r > 0)
     }
 
-    /// True if every row is as fine as it gets.
+    /// True if every row has its final level.
     fn is_finest(&self) -> bool {
         self.rows.iter().all(|&r| usize::from(r) == LEVELS.len())
     }
 
-    /// The fraction of all work that is done, by the rays of the levels.
+    /// Fraction of all rays that are traced.
     pub fn done(&self) -> f32 {
         let total: u32 = LEVELS.iter().map(|l| l[0]).sum();
         let of = |&r: &u8| LEVELS[..usize::from(r)].iter().map(|l| l[0]).sum::<u32>() as f32 / total as f32;
@@ -89,21 +89,21 @@ impl Picture {
     }
 }
 
-/// How far a truth is.
+/// Progress of a truth.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Progress {
-    /// The tree over the triangles is being built.
+    /// The tracer's hierarchy is built.
     Preparing,
-    /// Rows come in.
+    /// Rows are traced.
     Tracing {
-        /// Part of all work.
+        /// Fraction of all rays.
         done: f32,
         /// Shadow rays a pixel of the coarsest row.
         rays: u32,
     },
-    /// As fine as it gets.
+    /// The final level is complete.
     Done,
-    /// The tracing broke off: no more will come.
+    /// Tracing failed.
     Died(String),
 }
 
@@ -118,39 +118,39 @@ impl std::fmt::Display for Progress {
     }
 }
 
-/// A truth that is being traced, or has been.
+/// A truth in progress or finished.
 pub struct Truth {
-    /// What it is about.
+    /// Its inputs.
     pub question: Question,
-    /// What is known.
-    pub picture: Arc<Mutex<Picture>>,
+    /// The current image.
+    pub image: Arc<Mutex<TracedImage>>,
     work: Arc<Work>,
 }
 
 struct Work {
     question: Question,
     tracer: Arc<Lazy>,
-    picture: Arc<Mutex<Picture>>,
-    /// Rows that were begun, over all levels.
+    image: Arc<Mutex<TracedImage>>,
+    /// Number of started rows over all levels.
     next: AtomicU32,
     cancelled: AtomicBool,
 }
 
-/// A scene whose tree is built by the first who traces.
+/// A scene whose tracer is built on first use.
 pub struct Lazy {
     scene: Arc<Scene>,
     tracer: OnceLock<Tracer>,
-    /// True from when somebody began to build it.
+    /// True once building has started.
     begun: AtomicBool,
 }
 
 impl Lazy {
-    /// The scene as it stands.
+    /// The scene in its current pose.
     pub fn new(scene: Arc<Scene>) -> Lazy {
         Lazy { scene, tracer: OnceLock::new(), begun: AtomicBool::new(false) }
     }
 
-    /// The tree once it is built; none if it is given up because `is_wanted` says so.
+    /// The tracer, once it is built; none if `is_wanted` returns false.
     async fn get(&self, slice: &mut Slice, is_wanted: impl Fn() -> bool) -> Option<&Tracer> {
         if here::HAS_THREADS {
             return Some(self.tracer.get_or_init(|| Tracer::new(&self.scene)));
@@ -163,7 +163,7 @@ impl Lazy {
                 if !is_whole {
                     return None;
                 }
-                // Nobody else builds it meanwhile.
+                // The flag excludes other builders.
                 let _ = self.tracer.set(build.finish());
             }
             here::yield_to_frame().await;
@@ -171,40 +171,40 @@ impl Lazy {
         self.tracer.get()
     }
 
-    /// True once the tree is built.
+    /// True once the tracer is built.
     pub fn is_ready(&self) -> bool {
         self.tracer.get().is_some()
     }
 }
 
 impl Truth {
-    /// Starts tracing on all cores but one, or between the frames where there are no threads. `wake` is called when there is more to show.
+    /// Starts tracing on all cores but one, or in slices between frames. `wake` is called for new rows.
     pub fn start(question: Question, tracer: Arc<Lazy>, wake: impl Fn() + Clone + Send + 'static) -> Truth {
-        let picture = Arc::new(Mutex::new(Picture::empty(question.size)));
+        let image = Arc::new(Mutex::new(TracedImage::empty(question.size)));
         let work = Arc::new(Work {
             question,
             tracer,
-            picture: picture.clone(),
+            image: image.clone(),
             next: AtomicU32::new(0),
             cancelled: AtomicBool::new(false),
         });
         work.spawn(wake);
-        Truth { question, picture, work }
+        Truth { question, image, work }
     }
 
-    /// True if no more will come: it is as fine as it gets, or the tracing broke off.
+    /// True once tracing has ended or failed.
     pub fn is_over(&self) -> bool {
-        self.picture.lock().map_or(true, |p| p.died.is_some() || p.is_finest())
+        self.image.lock().map_or(true, |p| p.died.is_some() || p.is_finest())
     }
 
-    /// How far it is, for people.
+    /// Progress as text.
     pub fn progress(&self) -> Progress {
-        let Ok(picture) = self.picture.lock() else { return Progress::Died("its picture is lost".to_owned()) };
-        match &picture.died {
+        let Ok(image) = self.image.lock() else { return Progress::Died("its image is lost".to_owned()) };
+        match &image.died {
             Some(died) => Progress::Died(died.to_string()),
-            None if picture.is_finest() => Progress::Done,
-            None if picture.version == 0 && !self.work.tracer.is_ready() => Progress::Preparing,
-            None => Progress::Tracing { done: picture.done(), rays: picture.rays() },
+            None if image.is_finest() => Progress::Done,
+            None if image.version == 0 && !self.work.tracer.is_ready() => Progress::Preparing,
+            None => Progress::Tracing { done: image.done(), rays: image.rays() },
         }
     }
 }
@@ -218,7 +218,7 @@ impl Drop for Truth {
 impl Work {
     fn spawn(self: &Arc<Self>, wake: impl Fn() + Clone + Send + 'static) {
         for _ in 0..here::workers() {
-            let (work, picture, wake) = (self.clone(), self.picture.clone(), wake.clone());
+            let (work, image, wake) = (self.clone(), self.image.clone(), wake.clone());
             let trace = move || async move {
                 let mut slice = Slice::default();
                 while work.row(&mut slice).await {
@@ -226,8 +226,8 @@ impl Work {
                 }
             };
             here::run_job(trace, move |ended| {
-                if let (Err(died), Ok(mut picture)) = (ended, picture.lock()) {
-                    picture.died = Some(died);
+                if let (Err(died), Ok(mut image)) = (ended, image.lock()) {
+                    image.died = Some(died);
                 }
             });
         }
@@ -237,7 +237,7 @@ impl Work {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Traces the next row; false if there is none, or nobody wants it.
+    /// Traces the next row; false if there is none, or the truth is no longer wanted.
     async fn row(&self, slice: &mut Slice) -> bool {
         let [width, height] = self.question.size;
         let next = self.next.fetch_add(1, Ordering::Relaxed);
@@ -247,7 +247,7 @@ impl Work {
         }
         let [light_samples, pixel_samples] = LEVELS[level];
         let settings = Settings { light_samples, pixel_samples, ..Settings::of_size(width, height) };
-        // The next truth of the same scene goes on with what this one has begun.
+        // The next truth of this scene uses the same tracer.
         let is_wanted = || !self.is_cancelled() || Arc::strong_count(&self.tracer) > 1;
         let Some(tracer) = self.tracer.get(slice, is_wanted).await else { return false };
         let view = View::new(tracer, &self.question.camera, &self.question.light, &settings);
@@ -260,17 +260,17 @@ impl Work {
                 return false;
             }
         }
-        if let Ok(mut picture) = self.picture.lock() {
-            // A slow row of a coarser level may come in after a finer one.
-            if usize::from(picture.rows[y as usize]) <= level {
-                picture.put(y as usize, level as u8 + 1, &pixels);
+        if let Ok(mut image) = self.image.lock() {
+            // A slow row of a coarser level may arrive after a finer one.
+            if usize::from(image.rows[y as usize]) <= level {
+                image.put(y as usize, level as u8 + 1, &pixels);
             }
         }
         true
     }
 }
 
-/// The `k`-th row in an order that fills the picture evenly: every 16th, then those half-way between, and so on.
+/// The `k`-th row in an order that fills the image evenly: every 16th, then those half-way between, and so on.
 fn spread(k: u32, height: u32) -> u32 {
     let mut before = 0;
     for pass in 0..5u32 {
@@ -312,16 +312,16 @@ mod tests {
         }
         let settings = Settings::of_size(size[0], size[1]);
         let whole = trace(&scene, &settings, &|_| (), &AtomicBool::new(false)).unwrap();
-        let picture = truth.picture.lock().unwrap();
-        assert_eq!((picture.done(), picture.rays()), (1.0, 1024));
-        assert_eq!(picture.visibility, whole.visibility);
-        assert_eq!(picture.valid, whole.valid);
+        let image = truth.image.lock().unwrap();
+        assert_eq!((image.done(), image.rays()), (1.0, 1024));
+        assert_eq!(image.visibility, whole.visibility);
+        assert_eq!(image.valid, whole.valid);
     }
 
     #[test]
     fn a_truth_that_breaks_off_says_so() {
         let mut scene = antumbra_scene::builtin::build("square").unwrap();
-        // No importer gives such a mesh: a corner that is not there.
+        // An index out of range: no importer produces one.
         scene.meshes[0].indices[0] = u32::MAX;
         let question = Question { camera: scene.camera, light: scene.light, size: [24, 16], pose: 0 };
         let truth = Truth::start(question, Arc::new(Lazy::new(Arc::new(scene))), || ());

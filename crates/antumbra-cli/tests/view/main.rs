@@ -35,13 +35,13 @@ fn a_session_at_the_window() {
         let drawn = state["drawn"][0].as_str().unwrap_or_default().to_owned();
         assert!(drawn.starts_with(technique.name), "{spec}: {state}");
         // And what it lists can be looked into, picture after picture.
-        window.ask(json!({"inside": 0}));
-        let inner = window.settled()["inner"][0].take();
-        for name in inner.as_array().expect("a list") {
-            window.ask(json!({"inner": [name, 0]}));
+        window.ask(json!({"debug_views": 0}));
+        let views = window.settled()["debug_views"][0].take();
+        for name in views.as_array().expect("a list") {
+            window.ask(json!({"debug_view": [name, 0]}));
             window.settled();
         }
-        window.ask(json!({"inside": null}));
+        window.ask(json!({"debug_views": null}));
     }
     window.shot("techniques");
 

@@ -1,22 +1,22 @@
-//! Files of the disk.
+//! Files on disk.
 
-use crate::desk::Open;
 use crate::open;
+use crate::view_state::OpenScene;
 use eframe::egui;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// Opens a file.
-pub async fn load(name: &str) -> Result<Open, String> {
+pub async fn load(name: &str) -> Result<OpenScene, String> {
     open::from_files(name, &mut |file| std::fs::read(file))
 }
 
 /// Opens a file that was dropped on the window.
-pub async fn load_dropped(file: &Path, _all: &[egui::DroppedFileHandle]) -> Result<Open, String> {
+pub async fn load_dropped(file: &Path, _all: &[egui::DroppedFileHandle]) -> Result<OpenScene, String> {
     load(&file.display().to_string()).await
 }
 
-/// A path that came by a command instead of by the mouse.
+/// A path from a command, treated as a dropped file.
 pub fn dropped(path: PathBuf) -> egui::DroppedFileHandle {
     Arc::new(DroppedPath(path))
 }
@@ -34,19 +34,19 @@ impl egui::DroppedFile for DroppedPath {
     }
 }
 
-/// Keeps bytes under a name like this in the folder that the program was started in; says where.
+/// Writes bytes to a new file in the current folder and returns its path.
 pub fn keep(stem: &str, extension: &str, bytes: &[u8]) -> Result<String, String> {
     let path = free_name(&std::env::current_dir().unwrap_or_default(), stem, extension);
     write(&path, bytes)
 }
 
-/// Writes a file, over what was there; says where.
+/// Writes a file, replacing an old one, and returns its path.
 pub fn write(path: &Path, bytes: &[u8]) -> Result<String, String> {
     std::fs::write(path, bytes).map_err(|e| format!("cannot write {}: {e}", path.display()))?;
     Ok(path.display().to_string())
 }
 
-/// A name that is not taken in a folder: `name.png`, else `name-2.png` and so on.
+/// A free file name: `name.png`, else `name-2.png` and so on.
 fn free_name(folder: &Path, stem: &str, extension: &str) -> PathBuf {
     let name = |k: u32| match k {
         1 => folder.join(format!("{stem}.{extension}")),

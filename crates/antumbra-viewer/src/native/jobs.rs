@@ -1,4 +1,4 @@
-//! A thread for each job.
+//! Jobs on threads.
 
 use crate::job::Died;
 use std::future::Future;
@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 /// Name of the threads that work.
 const THREAD: &str = "antumbra job";
 
-/// Does the work on a thread of its own.
+/// Runs the work on a thread.
 pub fn run<T, F: Future<Output = T>>(
     work: impl FnOnce() -> F + Send + 'static,
     done: impl FnOnce(Result<T, Died>) + Send + 'static,
@@ -24,18 +24,18 @@ pub fn run<T, F: Future<Output = T>>(
     drop(started);
 }
 
-/// Jobs hold nothing up, and need not be cut.
+/// Jobs need no slices.
 pub const HAS_THREADS: bool = true;
 
-/// The frame is drawn by another thread, which needs no turn from this one.
+/// Another thread draws the frame: nothing to yield.
 pub async fn yield_to_frame() {}
 
-/// How many can work at once beside the frame.
+/// Number of jobs that run in parallel with the frame.
 pub fn workers() -> usize {
     std::thread::available_parallelism().map_or(1, |n| n.get().saturating_sub(1).max(1))
 }
 
-/// Leaves panics of background work to those who wait for its result; the window's are reported as ever.
+/// Hides panics of jobs, whose owners report them; others are reported as usual.
 pub fn leave_panics_of_jobs_to_their_owners() {
     let usual = take_hook();
     set_hook(Box::new(move |info| {

@@ -1,4 +1,4 @@
-//! The window, and what a program on a computer has: threads and files.
+//! The platform of a window: threads and files.
 
 mod dialog;
 mod files;
@@ -8,10 +8,10 @@ pub use dialog::choose_files;
 pub use files::{dropped, keep, load, load_dropped, write};
 pub use jobs::{HAS_THREADS, run as run_job, workers, yield_to_frame};
 
-use crate::app::{App, Asked, Keep, Kept};
-use crate::commands::Answer;
-use crate::desk::Desk;
+use crate::app::{App, PendingCommand, PersistentState, SharedState};
+use crate::commands::Reply;
 use crate::open::Source;
+use crate::view_state::ViewState;
 use antumbra::gpu::device::device_descriptor;
 use antumbra::{AdapterChoice, Spec};
 use eframe::egui;
@@ -20,14 +20,14 @@ use std::collections::VecDeque;
 use std::io::{BufRead, Write};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// How the viewer is opened.
+/// Options of the viewer.
 #[derive(Default)]
 pub struct Options {
-    /// A scene as on the command line.
+    /// Opens a scene, named as on the command line.
     pub scene: Option<String>,
     /// Up to two techniques.
     pub specs: Vec<Spec>,
-    /// Which adapter draws.
+    /// Graphics adapter.
     pub adapter: AdapterChoice,
     /// Size of the window in points.
     pub size: Option<[u32; 2]>,
@@ -35,7 +35,7 @@ pub struct Options {
     pub commands: bool,
 }
 
-/// Why there is no window.
+/// The window cannot be opened, with the reason.
 #[derive(Debug, thiserror::Error)]
 #[error("the window cannot be opened: {0}")]
 pub struct WindowError(String);
@@ -49,8 +49,8 @@ pub fn run(options: Options) -> Result<(), WindowError> {
     }
     jobs::leave_panics_of_jobs_to_their_owners();
     let scene = options.scene.unwrap_or_else(|| crate::FIRST_SCENE.to_owned());
-    let keep: Keep = Arc::new(Mutex::new(Some(Kept {
-        desk: Desk::new(&options.specs),
+    let keep: SharedState = Arc::new(Mutex::new(Some(PersistentState {
+        view_state: ViewState::new(&options.specs),
         first: Some(Source::Argument(scene)),
         commands,
         faults: Arc::default(),
@@ -75,7 +75,7 @@ pub fn run(options: Options) -> Result<(), WindowError> {
     }
 }
 
-/// Ends this window so that another one opens on a fresh device.
+/// Closes this window so that another opens on a new device.
 pub fn restart(ctx: &egui::Context) {
     ctx.send_viewport_cmd(egui::ViewportCommand::Close);
 }
@@ -99,13 +99,13 @@ fn native_options(adapter: &AdapterChoice, size: Option<[u32; 2]>) -> eframe::Na
             .with_icon(icon())
             .with_drag_and_drop(true),
         wgpu_options: WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..Default::default() },
-        // Noise in the picture would be taken for the technique's.
+        // Dithering would look like noise of the technique.
         dithering: false,
         ..Default::default()
     }
 }
 
-/// A ball in front of its light, with an antumbra behind it.
+/// The icon: a ball in front of a light, with its antumbra.
 fn icon() -> egui::IconData {
     const SIDE: usize = 64;
     let at = |i: usize| (i as f32 + 0.5) / SIDE as f32 * 2.0 - 1.0;
@@ -120,18 +120,18 @@ fn icon() -> egui::IconData {
     egui::IconData { rgba: (0..SIDE * SIDE).flat_map(pixel).collect(), width: SIDE as u32, height: SIDE as u32 }
 }
 
-/// Takes commands from stdin until it ends.
-fn listen(commands: Arc<Mutex<VecDeque<Asked>>>, waker: Arc<Mutex<Option<egui::Context>>>) {
+/// Reads commands from stdin until its end.
+fn listen(commands: Arc<Mutex<VecDeque<PendingCommand>>>, waker: Arc<Mutex<Option<egui::Context>>>) {
     std::thread::spawn(move || {
         for line in std::io::stdin().lock().lines().map_while(Result::ok).filter(|l| !l.trim().is_empty()) {
             match serde_json::from_str(&line) {
                 Ok(command) => {
-                    let answer = Box::new(|answer: Answer| say(&answer));
+                    let answer = Box::new(|answer: Reply| say(&answer));
                     if let Ok(mut queue) = commands.lock() {
-                        queue.push_back(Asked { command, answer });
+                        queue.push_back(PendingCommand { command, answer });
                     }
                 }
-                Err(error) => say(&Answer { error: Some(format!("{line}: {error}")), state: None }),
+                Err(error) => say(&Reply { error: Some(format!("{line}: {error}")), state: None }),
             }
             if let Some(ctx) = waker.lock().ok().and_then(|w| w.clone()) {
                 ctx.request_repaint();
@@ -140,8 +140,8 @@ fn listen(commands: Arc<Mutex<VecDeque<Asked>>>, waker: Arc<Mutex<Option<egui::C
     });
 }
 
-fn say(answer: &Answer) {
+fn say(answer: &Reply) {
     let text = serde_json::to_string(answer).unwrap_or_else(|e| format!("{{\"error\":\"{e}\"}}"));
-    // An asker that has gone needs no answer.
+    // The receiver may be gone.
     let _ = writeln!(std::io::stdout().lock(), "{text}");
 }

@@ -1,22 +1,22 @@
-//! The bar on top: the scene, what stands beside what, what is shown, and what can be taken away.
+//! The menu bar: scene, comparison, displayed quantity, saving.
 
-use super::{Memory, Save, Wishes};
-use crate::desk::{Compare, Desk};
+use super::{Save, UiActions, UiState};
 use crate::open::{Source, thousands};
 use crate::session::Session;
 use crate::show::Show;
+use crate::view_state::{Compare, ViewState};
 use antumbra_scene::builtin;
 use eframe::egui::{self, RichText};
 
-/// Points that the choices and what follows them take with words before them.
+/// Width of the comparison group with its labels, points.
 const LABELS: f32 = 860.0;
-/// Points that the choice of what is shown takes, and the buttons that move things.
+/// Width of the display group and the animation buttons, points.
 const SHOWS: f32 = 210.0;
 const TURNS: f32 = 220.0;
-/// Points that what stands on the right takes.
+/// Width of the right group, points.
 const LAST: f32 = 110.0;
 
-/// A line before the next group, or the next row where this one has no room for it.
+/// A separator before the next group, or a new row if this one is full.
 fn separator_or_row(ui: &mut egui::Ui, group: f32) {
     if ui.available_size_before_wrap().x > group {
         ui.separator();
@@ -26,17 +26,31 @@ fn separator_or_row(ui: &mut egui::Ui, group: f32) {
 }
 
 /// The bar.
-pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &mut Memory, wishes: &mut Wishes) {
-    egui::MenuBar::new().ui(ui, |ui| ui.horizontal_wrapped(|ui| row(ui, desk, session, memory, wishes)));
+pub fn show(
+    ui: &mut egui::Ui,
+    view_state: &mut ViewState,
+    session: &mut Session,
+    memory: &mut UiState,
+    actions: &mut UiActions,
+) {
+    egui::MenuBar::new().ui(ui, |ui| ui.horizontal_wrapped(|ui| row(ui, view_state, session, memory, actions)));
 }
 
-fn row(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &mut Memory, wishes: &mut Wishes) {
-    ui.menu_button("Scene", |ui| scenes(ui, desk, memory, wishes)).response.on_hover_text("Built-in scenes, or a file");
-    if ui.button("Open …").on_hover_text("A model or a scene file; or drop one on the picture").clicked() {
-        wishes.choose = true;
+fn row(
+    ui: &mut egui::Ui,
+    view_state: &mut ViewState,
+    session: &mut Session,
+    memory: &mut UiState,
+    actions: &mut UiActions,
+) {
+    ui.menu_button("Scene", |ui| scenes(ui, view_state, memory, actions))
+        .response
+        .on_hover_text("Built-in scenes, or a file");
+    if ui.button("Open …").on_hover_text("A model or a scene file; or drop one on the image").clicked() {
+        actions.choose = true;
     }
-    if let Some(open) = &desk.open {
-        let triangles = session.stage.as_ref().map_or(0, |s| s.triangles);
+    if let Some(open) = &view_state.open {
+        let triangles = session.loaded.as_ref().map_or(0, |s| s.triangles);
         let name = open.scene.name.trim_start_matches("builtin:");
         ui.label(RichText::new(name).strong()).on_hover_text(&open.source);
         ui.weak(format!("{} triangles", thousands(triangles)));
@@ -47,7 +61,7 @@ fn row(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &mut M
         ui.weak("compare");
     }
     for (value, text, help) in [
-        (Compare::One, "One", "One technique on the whole picture (1)"),
+        (Compare::One, "One", "One technique on the whole image (1)"),
         (Compare::Two, "Two side by side", "Two techniques; drag the line between them (2)"),
         (
             Compare::Truth,
@@ -55,65 +69,65 @@ fn row(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, memory: &mut M
             "A technique beside the ray-traced truth, which gets finer by itself (3)",
         ),
     ] {
-        ui.selectable_value(&mut desk.compare, value, text).on_hover_text(help);
+        ui.selectable_value(&mut view_state.compare, value, text).on_hover_text(help);
     }
     separator_or_row(ui, SHOWS);
     if is_wide {
         ui.weak("show");
     }
     for (value, text, help) in [
-        (Show::Picture, "Picture", "The shaded picture (P)"),
+        (Show::Image, "Image", "The shaded image (P)"),
         (Show::Visibility, "Visibility", "The part of the light that each pixel sees: white all, black none (V)"),
         (Show::Error, "Error", "Red where a technique is lighter than the truth, blue where it is darker (X)"),
     ] {
-        ui.selectable_value(&mut desk.show, value, text).on_hover_text(help);
+        ui.selectable_value(&mut view_state.show, value, text).on_hover_text(help);
     }
     separator_or_row(ui, TURNS);
-    let can_turn = session.stage.as_ref().is_some_and(|s| s.has_occluders());
+    let can_turn = session.loaded.as_ref().is_some_and(|s| s.has_occluders());
     ui.add_enabled_ui(can_turn, |ui| {
-        let text = if desk.turning { "Pause" } else { "Turn occluders" };
+        let text = if view_state.turning { "Pause" } else { "Turn occluders" };
         if ui.button(text).on_hover_text("Turns what casts shadows (space)").clicked() {
-            desk.turning = !desk.turning;
+            view_state.turning = !view_state.turning;
         }
     });
-    if !desk.is_as_opened()
+    if !view_state.is_as_opened()
         && ui.button("Reset view").on_hover_text("Camera, light and occluders as the scene has them (R)").clicked()
     {
-        reset(desk);
+        reset(view_state);
     }
-    // On the right, or in the next row where there is no room for both.
+    // At the right, or in the next row if this one is full.
     if ui.available_size_before_wrap().x > LAST {
         let layout = egui::Layout::right_to_left(egui::Align::Center);
         ui.with_layout(layout, |ui| {
-            ui.toggle_value(&mut desk.help, "Help");
-            ui.menu_button("Save", |ui| saves(ui, desk, wishes));
+            ui.toggle_value(&mut view_state.help, "Help");
+            ui.menu_button("Save", |ui| saves(ui, view_state, actions));
         });
     } else {
         ui.end_row();
-        ui.menu_button("Save", |ui| saves(ui, desk, wishes));
-        ui.toggle_value(&mut desk.help, "Help");
+        ui.menu_button("Save", |ui| saves(ui, view_state, actions));
+        ui.toggle_value(&mut view_state.help, "Help");
     }
 }
 
-/// Camera, light and occluders as the scene asks for.
-pub fn reset(desk: &mut Desk) {
-    if let Some(open) = desk.open.clone() {
-        desk.take(open);
+/// Resets camera, light and occluders to the scene's.
+pub fn reset(view_state: &mut ViewState) {
+    if let Some(open) = view_state.open.clone() {
+        view_state.take(open);
     }
 }
 
-fn scenes(ui: &mut egui::Ui, desk: &Desk, memory: &mut Memory, wishes: &mut Wishes) {
+fn scenes(ui: &mut egui::Ui, view_state: &ViewState, memory: &mut UiState, actions: &mut UiActions) {
     ui.set_min_width(320.0);
     for info in builtin::list() {
         let argument = format!("builtin:{}", info.name);
-        let is_open = desk.open.as_ref().is_some_and(|o| o.source == argument);
+        let is_open = view_state.open.as_ref().is_some_and(|o| o.source == argument);
         let text = format!("{}  ·  {}, {} triangles", info.name, info.title, thousands(info.triangles));
         let button = ui.selectable_label(is_open, text).on_hover_ui(|ui| {
             ui.strong(info.title);
             ui.label(info.description);
         });
         if button.clicked() {
-            wishes.open = Some(Source::Argument(argument));
+            actions.open = Some(Source::Argument(argument));
             ui.close();
         }
     }
@@ -124,19 +138,19 @@ fn scenes(ui: &mut egui::Ui, desk: &Desk, memory: &mut Memory, wishes: &mut Wish
         let enter = edit.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
         let path = memory.path.trim().trim_matches(['"', '\'']).to_owned();
         if (ui.add_enabled(!path.is_empty(), egui::Button::new("Open")).clicked() || enter) && !path.is_empty() {
-            wishes.open = Some(Source::Argument(path));
+            actions.open = Some(Source::Argument(path));
             ui.close();
         }
     });
     ui.weak("Or drop a file on the window: .glb, .gltf, .obj, .ply, or a scene file (.toml, .json).");
 }
 
-fn saves(ui: &mut egui::Ui, desk: &Desk, wishes: &mut Wishes) {
+fn saves(ui: &mut egui::Ui, view_state: &ViewState, actions: &mut UiActions) {
     ui.set_min_width(250.0);
-    let halves = desk.techniques();
+    let halves = view_state.techniques();
     let side = |i: usize| if halves == 1 { "" } else { [" of the left", " of the right"][i] };
     let mut items = vec![
-        ("Picture (.png)".to_owned(), Save::Picture),
+        ("Image (.png)".to_owned(), Save::Image),
         ("Whole window (.png)".to_owned(), Save::Window),
         ("Scene file (.toml)".to_owned(), Save::Scene),
     ];
@@ -144,7 +158,7 @@ fn saves(ui: &mut egui::Ui, desk: &Desk, wishes: &mut Wishes) {
     items.extend((0..halves).map(|i| (format!("Copy command line{}", side(i)), Save::Command(i))));
     for (text, save) in items {
         if ui.button(text).clicked() {
-            wishes.save = Some(save);
+            actions.save = Some(save);
             ui.close();
         }
     }

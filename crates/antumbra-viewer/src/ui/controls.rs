@@ -1,4 +1,4 @@
-//! A control for each setting, made from its description alone.
+//! Controls of settings, made from their descriptions.
 
 use crate::choice::Choice;
 use antumbra::technique::settings::{Kind, Setting};
@@ -37,7 +37,7 @@ pub fn show(ui: &mut egui::Ui, choice: &mut Choice, id: usize) {
     }
 }
 
-/// What a setting takes, for people.
+/// The range of a setting as text.
 fn range(setting: &Setting) -> String {
     match setting.kind {
         Kind::Integer { min, max } => format!("{}: whole number, {min} to {max}", setting.key),
@@ -48,7 +48,7 @@ fn range(setting: &Setting) -> String {
     }
 }
 
-/// The control; a value when it was changed.
+/// Draws the control; returns a value after a change.
 fn control(ui: &mut egui::Ui, choice: &Choice, setting: &Setting, id: usize) -> Option<Value> {
     let value = choice.value(setting);
     match setting.kind {
@@ -70,7 +70,7 @@ fn control(ui: &mut egui::Ui, choice: &Choice, setting: &Setting, id: usize) -> 
     }
 }
 
-/// Points as they are written in a SPEC; what cannot be read is left as it was.
+/// Points as text in the form of a SPEC; text that cannot be read changes nothing.
 fn points(ui: &mut egui::Ui, value: &Value, max: usize, id: (&str, usize)) -> Option<Value> {
     let memory = ui.scope_id().with(("typed", id));
     let pairs: Vec<[f32; 2]> = serde_json::from_value(value.clone()).unwrap_or_default();
@@ -90,7 +90,7 @@ fn points(ui: &mut egui::Ui, value: &Value, max: usize, id: (&str, usize)) -> Op
     typed.filter(|typed| *typed != pairs && typed.len() <= max).map(|typed| serde_json::json!(typed))
 }
 
-/// Up to three words in a row, more in a list.
+/// Words: up to three side by side, more in a list.
 fn choose(ui: &mut egui::Ui, value: &str, options: &[&'static str], id: (&str, usize)) -> Option<Value> {
     let mut chosen = None;
     let mut offer = |ui: &mut egui::Ui| {
@@ -109,7 +109,7 @@ fn choose(ui: &mut egui::Ui, value: &str, options: &[&'static str], id: (&str, u
     chosen
 }
 
-/// Sides of maps: powers of two in a list, any other by typing.
+/// Sizes of maps: powers of two in a list, other numbers by typing.
 fn texels(ui: &mut egui::Ui, value: u32, [min, max]: [u32; 2], id: (&str, usize)) -> Option<Value> {
     let mut chosen = None;
     egui::ComboBox::from_id_salt(id).width(70.0).selected_text(value.to_string()).show_ui(ui, |ui| {
@@ -136,7 +136,7 @@ fn slide(ui: &mut egui::Ui, value: f64, [min, max]: [f64; 2], whole: bool, id: (
     })
 }
 
-/// A control whose value counts when the pointer lets go of it, or when it was typed.
+/// A control whose value applies when the pointer releases it or typing ends.
 fn until_let_go(
     ui: &mut egui::Ui,
     id: (&str, usize),
@@ -147,7 +147,7 @@ fn until_let_go(
     let kept: Option<f64> = ui.data_mut(|d| d.remove_temp(memory));
     let mut number = kept.unwrap_or(value);
     let response = control(ui, &mut number);
-    // A slider is several widgets; its response tells of them all only by the pointer.
+    // A slider is several widgets; only the pointer's state covers them all.
     if ui.input(|i| i.pointer.any_down()) && (response.changed() || kept.is_some()) {
         ui.data_mut(|d| d.insert_temp(memory, number));
         return None;

@@ -1,8 +1,8 @@
-//! Times of passes over the last frames, a bar a frame.
+//! Graph of pass times, one bar per frame.
 
 use super::{numbers, style};
-use crate::desk::Desk;
 use crate::session::{Half, Session};
+use crate::view_state::ViewState;
 use eframe::egui::{self, Align2, Color32, FontId, Rect, RichText, Sense, Vec2, pos2};
 
 /// Width of a frame's bar, points.
@@ -11,8 +11,8 @@ const BAR: f32 = 3.0;
 const PASSES: f32 = 226.0;
 
 /// A graph for each technique.
-pub fn show(ui: &mut egui::Ui, desk: &Desk, session: &Session) {
-    let count = desk.techniques();
+pub fn show(ui: &mut egui::Ui, view_state: &ViewState, session: &Session) {
+    let count = view_state.techniques();
     ui.columns(count, |columns| {
         for (i, ui) in columns.iter_mut().enumerate() {
             one(ui, &session.halves[i], i, count);

@@ -1,6 +1,6 @@
 //! What the mouse and the keys do.
 
-use crate::desk::Desk;
+use crate::view_state::ViewState;
 use eframe::egui::{self, Align2};
 
 const MOUSE: &[(&str, &str)] = &[
@@ -16,7 +16,7 @@ const MOUSE: &[(&str, &str)] = &[
 
 const KEYS: &[(&str, &str)] = &[
     ("1  2  3", "one technique, two, one against the truth"),
-    ("P  V  X", "picture, visibility, error"),
+    ("P  V  X", "image, visibility, error"),
     ("space", "turn the occluders, or pause"),
     ("L", "handles of the light on or off"),
     ("R", "camera, light and occluders as the scene has them"),
@@ -24,9 +24,9 @@ const KEYS: &[(&str, &str)] = &[
 ];
 
 /// The window, if it is open.
-pub fn show(ctx: &egui::Context, desk: &mut Desk) {
+pub fn show(ctx: &egui::Context, view_state: &mut ViewState) {
     egui::Window::new("Help")
-        .open(&mut desk.help)
+        .open(&mut view_state.help)
         .anchor(Align2::CENTER_CENTER, [0.0, 0.0])
         .resizable(false)
         .collapsible(false)

@@ -1,44 +1,44 @@
-//! The controls: bars, panels, and what is drawn over the picture.
+//! The controls: bars, panels and overlays.
 
 mod bar;
 mod controls;
+mod debug_views;
 mod graph;
 mod help;
-mod inside;
+mod image;
+mod light;
 mod notices;
 mod numbers;
 mod overlay;
 mod panel;
-mod picture;
-mod sky;
 pub mod style;
 
+pub use image::{Grab, screen};
 pub use notices::Notices;
-pub use picture::{Grab, screen};
 
-use crate::desk::Desk;
 use crate::open::Source;
 use crate::session::Session;
+use crate::view_state::ViewState;
 use eframe::egui;
 use eframe::egui_wgpu::RenderState;
 
-/// What the controls ask of the program.
+/// Requests of the controls to the program.
 #[derive(Default)]
-pub struct Wishes {
-    /// To open a scene.
+pub struct UiActions {
+    /// Open a scene.
     pub open: Option<Source>,
-    /// To be asked for a file by the desktop's or the browser's dialog.
+    /// Show the file dialog.
     pub choose: bool,
-    /// To take something away.
+    /// Save or copy something.
     pub save: Option<Save>,
 }
 
-/// What can be taken away.
+/// Content that can be saved or copied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Save {
-    /// The picture as a PNG file.
-    Picture,
-    /// The whole window as a PNG file.
+    /// The image as a PNG file.
+    Image,
+    /// Saves the whole window as a PNG file.
     Window,
     /// A scene file.
     Scene,
@@ -48,66 +48,66 @@ pub enum Save {
     Command(usize),
 }
 
-/// What hints tell of.
+/// Hints that the user no longer needs.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Known {
-    /// That the scene can be turned, panned and zoomed.
+pub struct Hints {
+    /// Orbit, pan and zoom.
     pub moving: bool,
-    /// That the line between the halves can be dragged.
+    /// The divider.
     pub dividing: bool,
 }
 
-/// What the controls remember from frame to frame and nobody else needs.
+/// State of the controls that outlives a frame.
 #[derive(Default)]
-pub struct Memory {
+pub struct UiState {
     /// Messages on the screen.
     pub notices: Notices,
-    /// What the pointer holds.
+    /// The object that the pointer drags.
     pub grab: Option<Grab>,
-    /// The path that is being typed.
+    /// Text of the path field.
     pub path: String,
-    /// What the user has found out already, so that it need not be said any more.
-    pub known: Known,
-    /// Where the picture is on the screen, points.
+    /// Hints that are no longer shown.
+    pub known: Hints,
+    /// Area of the image on the screen, points.
     pub area: Option<egui::Rect>,
-    /// Textures of the pictures as egui knows them, and for which sizes.
+    /// egui's textures of the images, and the number of the size that they belong to.
     pub textures: Option<([egui::TextureId; 2], u64)>,
     /// GPU errors that have been shown.
     pub faults_shown: usize,
-    /// The inner picture as egui knows it.
-    pub inner: Option<egui::TextureId>,
+    /// egui's texture of the debug view.
+    pub debug_view: Option<egui::TextureId>,
 }
 
-/// One frame of controls. The picture is drawn in between, when its size is known.
+/// Draws the controls, and the image once its size is known.
 pub fn show(
     ui: &mut egui::Ui,
     render: &RenderState,
-    desk: &mut Desk,
+    view_state: &mut ViewState,
     session: &mut Session,
-    memory: &mut Memory,
-) -> Wishes {
-    let mut wishes = Wishes::default();
+    memory: &mut UiState,
+) -> UiActions {
+    let mut actions = UiActions::default();
     if ui.available_size().min_elem() < style::LEAST {
-        return wishes;
+        return actions;
     }
-    egui::Panel::top("bar").show(ui, |ui| bar::show(ui, desk, session, memory, &mut wishes));
+    egui::Panel::top("bar").show(ui, |ui| bar::show(ui, view_state, session, memory, &mut actions));
     egui::Panel::right("panel")
         .default_size(style::PANEL)
         .size_range(240.0..=460.0)
-        .show(ui, |ui| panel::show(ui, desk, session, &mut wishes));
-    if desk.times {
-        egui::Panel::bottom("times").exact_size(style::GRAPH).show(ui, |ui| graph::show(ui, desk, session));
+        .show(ui, |ui| panel::show(ui, view_state, session, &mut actions));
+    if view_state.times {
+        egui::Panel::bottom("times").exact_size(style::GRAPH).show(ui, |ui| graph::show(ui, view_state, session));
     }
     egui::CentralPanel::no_frame().show(ui, |ui| {
-        picture::show(ui, render, desk, session, memory);
+        image::show(ui, render, view_state, session, memory);
         if let Some(area) = memory.area {
-            // Messages are where hints are.
+            // Messages take the place of hints.
             let moving = memory.known.moving || !memory.notices.is_empty();
-            overlay::show(ui, area, desk, session, &Known { moving, ..memory.known });
+            overlay::show(ui, area, view_state, session, &Hints { moving, ..memory.known });
         }
     });
-    inside::show(ui.ctx(), render, desk, session, memory);
-    help::show(ui.ctx(), desk);
+    debug_views::show(ui.ctx(), render, view_state, session, memory);
+    help::show(ui.ctx(), view_state);
     notices::show(ui.ctx(), memory.area, session, &mut memory.notices);
-    wishes
+    actions
 }

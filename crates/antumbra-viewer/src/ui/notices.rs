@@ -1,11 +1,11 @@
-//! Messages, and what is being waited for.
+//! Messages and progress.
 
 use super::style;
 use crate::session::Session;
 use eframe::egui::{self, Align2, Color32, Rect, RichText, vec2};
 use web_time::{Duration, Instant};
 
-/// How long good news stay.
+/// How long messages of success stay.
 const SHOWN: Duration = Duration::from_secs(6);
 
 /// Messages on the screen. Errors stay until they are closed.
@@ -22,12 +22,12 @@ struct Notice {
 }
 
 impl Notices {
-    /// Something went wrong.
+    /// Adds an error.
     pub fn error(&mut self, text: impl Into<String>) {
         self.push(text.into(), true);
     }
 
-    /// Something was done.
+    /// Adds a message of success.
     pub fn done(&mut self, text: impl Into<String>) {
         self.push(text.into(), false);
     }
@@ -42,7 +42,7 @@ impl Notices {
         self.list.is_empty()
     }
 
-    /// Takes everything away.
+    /// Closes all messages.
     pub fn clear(&mut self) {
         self.list.clear();
     }
@@ -55,7 +55,7 @@ impl Notices {
     }
 }
 
-/// Messages at the lower left of the picture; a card in its middle while a scene is opened.
+/// Draws messages at the lower left of the image, and a progress card while a scene is opened.
 pub fn show(ctx: &egui::Context, area: Option<Rect>, session: &mut Session, notices: &mut Notices) {
     let area = area.unwrap_or(ctx.content_rect());
     opening(ctx, area, session);
@@ -74,7 +74,7 @@ pub fn show(ctx: &egui::Context, area: Option<Rect>, session: &mut Session, noti
                         ui.colored_label(color, if notice.is_error { "Error" } else { "Done" });
                         let times =
                             if notice.count > 1 { format!("  ({} times)", notice.count) } else { String::new() };
-                        let text = RichText::new(format!("{}{times}", notice.text)).color(style::ON_PICTURE);
+                        let text = RichText::new(format!("{}{times}", notice.text)).color(style::ON_IMAGE);
                         ui.add(egui::Label::new(text).wrap().selectable(true));
                         if ui.small_button("close").clicked() {
                             closed = Some(i);

@@ -1,10 +1,10 @@
-//! Figures of a technique: error, time, memory.
+//! Error, time and memory of a technique.
 
 use super::style;
 use crate::session::Session;
 use eframe::egui::{self, RichText};
 
-/// The figures of a half.
+/// The numbers of a half.
 pub fn show(ui: &mut egui::Ui, session: &Session, half: usize) {
     let state = &session.halves[half];
     let Some((_, technique)) = &state.made else { return };
@@ -55,7 +55,7 @@ pub fn show(ui: &mut egui::Ui, session: &Session, half: usize) {
     }
 }
 
-/// Small errors are calm, large ones are warm.
+/// Colour of an error: the larger, the warmer.
 fn grade(error: f64) -> egui::Color32 {
     match error {
         e if e < 0.02 => egui::Color32::from_rgb(150, 214, 160),

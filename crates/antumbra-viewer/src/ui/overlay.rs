@@ -1,59 +1,59 @@
-//! What is written over the picture: which technique is where, what it costs, how far it is off; the colour bar.
+//! Text over the image: techniques, cost, error, colour bar, hints.
 
-use super::{Known, numbers, panel, style};
-use crate::desk::{Compare, Desk};
+use super::{Hints, numbers, panel, style};
 use crate::session::Session;
 use crate::show::Show;
 use crate::truth::{Progress, Truth};
+use crate::view_state::{Compare, ViewState};
 use antumbra_metrics::{HEAT_SCALE, heat_color};
 use eframe::egui::{self, Align2, Color32, FontId, Pos2, Rect, RichText, pos2, vec2};
 
-/// Labels in the upper corners, the colour bar below where errors are shown, and hints until they are known.
-pub fn show(ui: &mut egui::Ui, area: Rect, desk: &mut Desk, session: &mut Session, known: &Known) {
+/// Draws labels in the upper corners, the colour bar while errors are shown, and hints for new users.
+pub fn show(ui: &mut egui::Ui, area: Rect, view_state: &mut ViewState, session: &mut Session, known: &Hints) {
     // A window may be as small as a title bar.
     if area.width() < 60.0 || area.height() < 60.0 {
         return;
     }
-    if session.stage.is_some() {
-        let middle = area.left() + area.width() * desk.divider;
-        let is_split = desk.compare != Compare::One;
-        label(ui, area, area.left_top(), Align2::LEFT_TOP, |ui| technique(ui, desk, session, 0));
+    if session.loaded.is_some() {
+        let middle = area.left() + area.width() * view_state.divider;
+        let is_split = view_state.compare != Compare::One;
+        label(ui, area, area.left_top(), Align2::LEFT_TOP, |ui| technique(ui, view_state, session, 0));
         if is_split {
             let corner = pos2(area.right(), area.top());
             let is_narrow = area.right() - middle < 60.0;
             if !is_narrow {
-                label(ui, area, corner, Align2::RIGHT_TOP, |ui| match desk.compare {
-                    Compare::Two => technique(ui, desk, session, 1),
+                label(ui, area, corner, Align2::RIGHT_TOP, |ui| match view_state.compare {
+                    Compare::Two => technique(ui, view_state, session, 1),
                     _ => truth(ui, session),
                 });
             }
         }
     }
-    if desk.show == Show::Error {
+    if view_state.show == Show::Error {
         color_bar(ui, area, session);
     }
-    if session.stage.is_some() {
-        hints(ui, area, desk, known);
+    if session.loaded.is_some() {
+        hints(ui, area, view_state, known);
     }
 }
 
-/// What the mouse does here, for those who have not moved anything yet.
-fn hints(ui: &egui::Ui, area: Rect, desk: &Desk, known: &Known) {
+/// Hints about the mouse, until the user has moved something.
+fn hints(ui: &egui::Ui, area: Rect, view_state: &ViewState, known: &Hints) {
     let hint = |at: Pos2, pivot: Align2, text: &str| {
         let most = (area.width() - 40.0).max(60.0);
         let painter = ui.painter_at(area);
-        let galley = painter.layout(text.to_owned(), FontId::proportional(12.5), style::ON_PICTURE, most);
+        let galley = painter.layout(text.to_owned(), FontId::proportional(12.5), style::ON_IMAGE, most);
         let place = pivot.anchor_size(at, galley.size());
         painter.rect_filled(place.expand2(vec2(9.0, 4.0)), 5.0, style::SHADE);
-        painter.galley(place.min, galley, style::ON_PICTURE);
+        painter.galley(place.min, galley, style::ON_IMAGE);
     };
     if !known.moving {
-        let above = if desk.show == Show::Error { 92.0 } else { 16.0 };
+        let above = if view_state.show == Show::Error { 92.0 } else { 16.0 };
         let text = "drag: turn      wheel or pinch: zoom      right drag: move      F1: all keys";
         hint(area.center_bottom() - vec2(0.0, above), Align2::CENTER_BOTTOM, text);
     }
-    if desk.compare != Compare::One && !known.dividing && area.height() > 240.0 {
-        let middle = pos2(area.left() + area.width() * desk.divider, area.center().y + 26.0);
+    if view_state.compare != Compare::One && !known.dividing && area.height() > 240.0 {
+        let middle = pos2(area.left() + area.width() * view_state.divider, area.center().y + 26.0);
         hint(middle, Align2::CENTER_TOP, "drag the line");
     }
 }
@@ -68,10 +68,10 @@ fn label(ui: &egui::Ui, area: Rect, corner: Pos2, pivot: Align2, content: impl F
         .show(ui.ctx(), |ui| style::card().show(ui, content));
 }
 
-fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: usize) {
+fn technique(ui: &mut egui::Ui, view_state: &mut ViewState, session: &mut Session, half: usize) {
     ui.set_max_width(280.0);
-    let choice = &mut desk.choices[half];
-    let name = RichText::new(choice.technique.name).strong().size(15.0).color(style::ON_PICTURE);
+    let choice = &mut view_state.choices[half];
+    let name = RichText::new(choice.technique.name).strong().size(15.0).color(style::ON_IMAGE);
     let button = egui::Button::new((name, egui::containers::menu::SubMenuButton::arrow_atom(None)));
     let gpu = &session.gpu;
     let menu = egui::containers::menu::MenuButton::from_button(button).ui(ui, |ui| panel::pick(ui, choice, gpu));
@@ -86,7 +86,7 @@ fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: us
         facts.push(format!("error {:.4}", figures.average_error));
     }
     if !facts.is_empty() {
-        ui.label(RichText::new(facts.join("   ")).monospace().color(style::ON_PICTURE));
+        ui.label(RichText::new(facts.join("   ")).monospace().color(style::ON_IMAGE));
     }
     let mut back = None;
     if let Some((making, job)) = state.making.as_ref().filter(|(c, _)| *c == *choice) {
@@ -109,13 +109,13 @@ fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: us
 }
 
 fn truth(ui: &mut egui::Ui, session: &Session) {
-    ui.label(RichText::new("Ray-traced truth").strong().size(15.0).color(style::ON_PICTURE));
+    ui.label(RichText::new("Ray-traced truth").strong().size(15.0).color(style::ON_IMAGE));
     let (text, color) = progress(session);
     ui.set_max_width(280.0);
     ui.add(egui::Label::new(RichText::new(text).small().color(color)).wrap());
 }
 
-/// How far the truth is, and in what colour that is said.
+/// Progress of the truth as text, with its colour.
 fn progress(session: &Session) -> (String, Color32) {
     match session.truth.as_ref().map(Truth::progress) {
         None => ("waits until everything rests".to_owned(), Color32::from_gray(190)),
@@ -147,13 +147,7 @@ fn color_bar(ui: &egui::Ui, area: Rect, session: &Session) {
     let y = bar.bottom() + 4.0;
     let ends = [(0.0, format!("{:+.2}", -HEAT_SCALE)), (0.5, "0".to_owned()), (1.0, format!("{HEAT_SCALE:+.2}"))];
     for (part, text) in ends {
-        painter.text(
-            pos2(bar.left() + bar.width() * part, y),
-            Align2::CENTER_TOP,
-            text,
-            font.clone(),
-            style::ON_PICTURE,
-        );
+        painter.text(pos2(bar.left() + bar.width() * part, y), Align2::CENTER_TOP, text, font.clone(), style::ON_IMAGE);
     }
     for (part, text) in [(0.25, "too dark"), (0.75, "too light")] {
         painter.text(

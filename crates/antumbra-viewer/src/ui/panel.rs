@@ -1,31 +1,31 @@
-//! The side panel: techniques with their settings, the light, the picture.
+//! The side panel: techniques with their settings, the light, the image.
 
-use super::{Wishes, controls, numbers, sky, style};
+use super::{UiActions, controls, light, numbers, style};
 use crate::choice::Choice;
-use crate::desk::{Compare, Desk, Inside};
 use crate::session::Session;
 use crate::truth::Progress;
+use crate::view_state::{Compare, DebugSelection, ViewState};
 use antumbra::Gpu;
 use antumbra::techniques::TECHNIQUES;
 use eframe::egui::{self, RichText};
 
 /// The panel.
-pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, wishes: &mut Wishes) {
+pub fn show(ui: &mut egui::Ui, view_state: &mut ViewState, session: &mut Session, actions: &mut UiActions) {
     egui::ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| {
         ui.add_space(4.0);
-        for half in 0..desk.techniques() {
-            let title = match (desk.compare, half) {
+        for half in 0..view_state.techniques() {
+            let title = match (view_state.compare, half) {
                 (Compare::One, _) => "Technique",
                 (_, 0) => "Left",
                 _ => "Right",
             };
-            section(ui, title, |ui| technique(ui, desk, session, half, wishes));
+            section(ui, title, |ui| technique(ui, view_state, session, half, actions));
         }
-        if desk.compare == Compare::Truth {
+        if view_state.compare == Compare::Truth {
             section(ui, "Right", |ui| truth(ui, session));
         }
-        section(ui, "Light", |ui| sky::show(ui, desk, session));
-        section(ui, "Drawing", |ui| drawing(ui, desk, session));
+        section(ui, "Light", |ui| light::show(ui, view_state, session));
+        section(ui, "Drawing", |ui| drawing(ui, view_state, session));
     });
 }
 
@@ -34,8 +34,14 @@ fn section(ui: &mut egui::Ui, title: &str, content: impl FnOnce(&mut egui::Ui)) 
     ui.add_space(4.0);
 }
 
-fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: usize, wishes: &mut Wishes) {
-    let choice = &mut desk.choices[half];
+fn technique(
+    ui: &mut egui::Ui,
+    view_state: &mut ViewState,
+    session: &mut Session,
+    half: usize,
+    actions: &mut UiActions,
+) {
+    let choice = &mut view_state.choices[half];
     let title = |t: &antumbra::TechniqueInfo| format!("{}  ·  {}", t.name, t.title);
     egui::ComboBox::from_id_salt(("technique", half))
         .width(ui.available_width() - 8.0)
@@ -64,19 +70,19 @@ fn technique(ui: &mut egui::Ui, desk: &mut Desk, session: &mut Session, half: us
             *choice = fresh;
         }
         if ui.button("Copy SPEC").on_hover_text(choice.text()).clicked() {
-            wishes.save = Some(super::Save::Spec(half));
+            actions.save = Some(super::Save::Spec(half));
         }
         let can_look = state.made.as_ref().is_some_and(|m| !m.1.debug_views().is_empty());
         ui.add_enabled_ui(can_look, |ui| {
-            if ui.button("Debug views").on_hover_text("Its maps and lists as pictures").clicked() {
-                desk.inside = Some(Inside { half, ..Inside::default() });
+            if ui.button("Debug views").on_hover_text("Maps and lists of the technique").clicked() {
+                view_state.debug = Some(DebugSelection { half, ..DebugSelection::default() });
             }
         });
     });
     numbers::show(ui, session, half);
 }
 
-/// The list of techniques. What this adapter cannot run is there too, and says why.
+/// The list of techniques. Those that this adapter cannot run are disabled and say why.
 pub fn pick(ui: &mut egui::Ui, choice: &mut Choice, gpu: &Gpu) {
     for technique in TECHNIQUES {
         let is_chosen = technique.name == choice.technique.name;
@@ -118,28 +124,28 @@ fn truth(ui: &mut egui::Ui, session: &Session) {
     ui.add(egui::ProgressBar::new(done).text(text).desired_height(14.0));
 }
 
-fn drawing(ui: &mut egui::Ui, desk: &mut Desk, session: &Session) {
+fn drawing(ui: &mut egui::Ui, view_state: &mut ViewState, session: &Session) {
     egui::Grid::new("drawing").num_columns(2).spacing([10.0, 6.0]).show(ui, |ui| {
-        ui.label("resolution").on_hover_text("Pixels of the picture for one of the screen, along each side");
+        ui.label("resolution").on_hover_text("Image pixels per screen pixel, along each axis");
         let text = |r: Option<f32>| match r {
             None => format!("auto ({:.0} %)", 100.0 * automatic(session)),
             Some(r) => format!("{:.0} %", 100.0 * r),
         };
-        egui::ComboBox::from_id_salt("resolution").selected_text(text(desk.resolution)).show_ui(ui, |ui| {
+        egui::ComboBox::from_id_salt("resolution").selected_text(text(view_state.resolution)).show_ui(ui, |ui| {
             for r in [None, Some(1.0), Some(0.75), Some(0.5), Some(1.0 / 3.0), Some(0.25)] {
-                ui.selectable_value(&mut desk.resolution, r, text(r));
+                ui.selectable_value(&mut view_state.resolution, r, text(r));
             }
         });
         ui.end_row();
         ui.label("frames").on_hover_text("Drawn only when something changes, or one after the other");
-        ui.checkbox(&mut desk.keeps_drawing, "keep drawing");
+        ui.checkbox(&mut view_state.keeps_drawing, "keep drawing");
         ui.end_row();
         ui.label("graph");
-        ui.checkbox(&mut desk.times, "times of passes");
+        ui.checkbox(&mut view_state.times, "times of passes");
         ui.end_row();
     });
     let gpu = &session.gpu;
-    let host = session.canvas.as_ref().map_or(0, crate::stage::Canvas::bytes);
+    let host = session.targets.as_ref().map_or(0, crate::render_targets::RenderTargets::bytes);
     ui.add(egui::Label::new(RichText::new(&gpu.info.name).small().weak()).truncate()).on_hover_text(format!(
         "{}\n{:?}, {} {}\ngeometry buffer: {}",
         gpu.info.name,
@@ -150,7 +156,7 @@ fn drawing(ui: &mut egui::Ui, desk: &mut Desk, session: &Session) {
     ));
 }
 
-/// Pixels of the picture for one of the screen where none is chosen.
+/// Default resolution: image pixels per screen pixel.
 pub fn automatic(session: &Session) -> f32 {
     if session.gpu.is_software() { 0.5 } else { 1.0 }
 }

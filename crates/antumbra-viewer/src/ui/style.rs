@@ -1,26 +1,26 @@
-//! Colours and sizes: few, and all here.
+//! Colours and sizes of the controls.
 
 use eframe::egui::{self, Color32, CornerRadius, FontId, Margin, Stroke, TextStyle, Visuals};
 
-/// A window that is narrower or lower than this shows nothing, points: bars and panels would have sizes under 0.
+/// Smallest size of a window that shows controls, points: below, bars and panels would have negative sizes.
 pub const LEAST: f32 = 100.0;
 /// Width of the side panel, points.
 pub const PANEL: f32 = 296.0;
 /// Height of the graph, points.
 pub const GRAPH: f32 = 132.0;
-/// What can be taken hold of, and what is chosen.
+/// Handles and selections.
 pub const ACCENT: Color32 = Color32::from_rgb(255, 196, 84);
-/// Text over the picture.
-pub const ON_PICTURE: Color32 = Color32::from_rgb(240, 240, 244);
-/// Behind text over the picture.
+/// Text over the image.
+pub const ON_IMAGE: Color32 = Color32::from_rgb(240, 240, 244);
+/// Behind text over the image.
 pub const SHADE: Color32 = Color32::from_rgba_premultiplied(14, 15, 20, 205);
-/// What went wrong.
+/// Errors.
 pub const BAD: Color32 = Color32::from_rgb(255, 122, 105);
 /// The world's axes.
 pub const AXES: [Color32; 3] =
     [Color32::from_rgb(240, 92, 92), Color32::from_rgb(122, 200, 92), Color32::from_rgb(92, 148, 255)];
 
-/// One colour for each pass of a technique, over again where they are more. Even neighbours are told apart.
+/// Colours of passes, repeated after the last; neighbours are distinct.
 const PASSES: [Color32; 8] = [
     Color32::from_rgb(92, 148, 214),
     Color32::from_rgb(240, 170, 80),
@@ -37,7 +37,7 @@ pub fn pass_color(index: usize) -> Color32 {
     PASSES[index % PASSES.len()]
 }
 
-/// Dresses egui.
+/// Applies the style to egui.
 pub fn apply(ctx: &egui::Context) {
     ctx.set_theme(egui::Theme::Dark);
     let mut visuals = Visuals::dark();
@@ -66,7 +66,7 @@ pub fn apply(ctx: &egui::Context) {
     });
 }
 
-/// A card over the picture.
+/// A card over the image.
 pub fn card() -> egui::Frame {
     egui::Frame::new().fill(SHADE).corner_radius(CornerRadius::same(5)).inner_margin(Margin::symmetric(8, 5))
 }

@@ -1,8 +1,8 @@
-//! Commands from the page's JavaScript, and what the page is told.
+//! Commands from the page's JavaScript, and calls into it.
 
 use super::{files, wake};
-use crate::app::Asked;
-use crate::commands::{Answer, Command};
+use crate::app::PendingCommand;
+use crate::commands::{Command, Reply};
 use js_sys::{Function, JSON, Object, Promise, Reflect};
 use send_wrapper::SendWrapper;
 use std::collections::VecDeque;
@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex};
 use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast, JsValue};
 
-/// The page's object of our name, made if need be.
+/// The page's object `window.antumbra`, made if missing.
 fn ours() -> Result<Object, JsValue> {
     let global = js_sys::global();
     let name = JsValue::from_str("antumbra");
@@ -27,32 +27,32 @@ fn ours() -> Result<Object, JsValue> {
 pub fn tell(function: &str, text: &str) {
     let found = ours().and_then(|o| Reflect::get(&o, &function.into())).and_then(|f| f.dyn_into::<Function>());
     if let Ok(found) = found {
-        // A page that fails at this has said so itself.
+        // The page reports its own failures.
         let _ = found.call1(&JsValue::NULL, &text.into());
     }
 }
 
 /// Adds `ask` to the page's object: commands go to this list.
-pub fn listen(commands: &Arc<Mutex<VecDeque<Asked>>>) -> Result<(), JsValue> {
+pub fn listen(commands: &Arc<Mutex<VecDeque<PendingCommand>>>) -> Result<(), JsValue> {
     let commands = commands.clone();
     let ask = Closure::<dyn FnMut(JsValue) -> Promise>::new(move |command: JsValue| {
         let commands = commands.clone();
         Promise::new(&mut move |resolve, _| {
             let resolve = SendWrapper::new(resolve);
-            let answer = Box::new(move |answer: Answer| answer_with(&resolve, &answer));
+            let answer = Box::new(move |answer: Reply| answer_with(&resolve, &answer));
             match read(&command) {
                 Ok(command) => {
                     if let Ok(mut queue) = commands.lock() {
-                        queue.push_back(Asked { command, answer });
+                        queue.push_back(PendingCommand { command, answer });
                     }
                 }
-                Err(error) => answer(Answer { error: Some(error), state: None }),
+                Err(error) => answer(Reply { error: Some(error), state: None }),
             }
             wake();
         })
     });
     Reflect::set(&ours()?.into(), &"ask".into(), ask.as_ref())?;
-    // The page asks as long as it lives.
+    // The closure lives as long as the page.
     ask.forget();
     Ok(())
 }
@@ -62,9 +62,9 @@ fn read(command: &JsValue) -> Result<Command, String> {
     serde_json::from_str(&String::from(text)).map_err(|e| e.to_string())
 }
 
-fn answer_with(resolve: &Function, answer: &Answer) {
+fn answer_with(resolve: &Function, answer: &Reply) {
     let text = serde_json::to_string(answer).unwrap_or_default();
     let value = JSON::parse(&text).unwrap_or(JsValue::NULL);
-    // Nobody listens to a page that was left.
+    // The page may be gone.
     let _ = resolve.call1(&JsValue::NULL, &value);
 }

@@ -14,7 +14,7 @@ use wasm_bindgen::closure::Closure;
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
-/// Asks for files. A browser opens its dialog only shortly after a click, and says nothing where it does not.
+/// Shows the file dialog. A browser opens it only shortly after a click, and reports nothing otherwise.
 pub fn choose_files(extensions: &[&str], wake: impl Fn() + 'static) -> Receiver<Chosen> {
     let (send, receive) = channel();
     if let Err(error) = ask(extensions, send.clone(), wake) {
@@ -35,12 +35,12 @@ fn ask(extensions: &[&str], send: Sender<Chosen>, wake: impl Fn() + 'static) -> 
             let list = input.files();
             let files = (0..list.as_ref().map_or(0, web_sys::FileList::length)).filter_map(|i| list.as_ref()?.get(i));
             let files = files.map(|file| Arc::new(ChosenFile::of(file)) as egui::DroppedFileHandle).collect();
-            // Nobody waits where the viewer has begun anew.
+            // The viewer may have restarted.
             let _ = send.send(Ok(files));
             wake();
         }
     };
-    // One of both comes; then both go.
+    // Either event ends both.
     let heard = Rc::new(chosen);
     for event in ["change", "cancel"] {
         let heard = heard.clone();

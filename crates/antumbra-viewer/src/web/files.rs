@@ -1,7 +1,7 @@
-//! What a page has for files: addresses, files that were dropped on it, and downloads.
+//! Files of a page: addresses, dropped files, downloads.
 
-use crate::desk::Open;
 use crate::open;
+use crate::view_state::OpenScene;
 use eframe::egui;
 use std::collections::BTreeMap;
 use std::future::Future;
@@ -12,9 +12,9 @@ use std::sync::Arc;
 use wasm_bindgen::{JsCast, JsValue};
 use wasm_bindgen_futures::JsFuture;
 
-/// Opens what is at an address. A reader cannot wait in the middle of a file for another that the file refers to: what it
-/// misses is fetched, and then it starts again.
-pub async fn load(name: &str) -> Result<Open, String> {
+/// Opens the scene at an address. A reader cannot wait for a file that another file refers to: missing files
+/// are fetched, then reading starts again.
+pub async fn load(name: &str) -> Result<OpenScene, String> {
     let mut known: BTreeMap<String, Result<Vec<u8>, String>> = BTreeMap::new();
     loop {
         let mut missing = None;
@@ -44,14 +44,14 @@ pub async fn fetch(address: &str) -> Result<Vec<u8>, String> {
     Ok(js_sys::Uint8Array::new(&bytes).to_vec())
 }
 
-/// What JavaScript says went wrong.
+/// The message of a JavaScript error.
 pub fn text(value: &JsValue) -> String {
     let error = value.dyn_ref::<js_sys::Error>().map(|e| String::from(e.message()));
     error.or_else(|| value.as_string()).unwrap_or_else(|| format!("{value:?}"))
 }
 
-/// Opens a file that was dropped on the page; what it refers to has to be dropped with it.
-pub async fn load_dropped(file: &Path, all: &[egui::DroppedFileHandle]) -> Result<Open, String> {
+/// Opens a file that was dropped on the page, with the dropped files that it refers to.
+pub async fn load_dropped(file: &Path, all: &[egui::DroppedFileHandle]) -> Result<OpenScene, String> {
     let mut known = BTreeMap::new();
     for handle in all {
         known.insert(file_name(handle.path()), handle.bytes_async().await?);
@@ -63,12 +63,12 @@ pub async fn load_dropped(file: &Path, all: &[egui::DroppedFileHandle]) -> Resul
     })
 }
 
-/// The last part of a path, which is all that a page learns of it.
+/// The last part of a path: a page learns no more of it.
 fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// An address that came by a command, as if what is there were dropped.
+/// An address from a command, treated as a dropped file.
 pub fn dropped(address: PathBuf) -> egui::DroppedFileHandle {
     Arc::new(Address(address))
 }
@@ -86,7 +86,7 @@ impl egui::DroppedFile for Address {
     }
 }
 
-/// Downloads bytes under a name like this; says where to. The browser finds a name that is free.
+/// Downloads bytes under this name and returns the place as text. The browser makes the name unique.
 pub fn keep(stem: &str, extension: &str, bytes: &[u8]) -> Result<String, String> {
     download(&format!("{stem}.{extension}"), bytes).map_err(|e| text(&e))
 }

@@ -5,7 +5,7 @@ use js_sys::Promise;
 use std::future::Future;
 use wasm_bindgen_futures::{JsFuture, spawn_local};
 
-/// Does the work once what is running now has ended, and between the frames where it breathes. A panic ends the page.
+/// Runs the work after the current task, in slices between frames. A panic ends the page.
 pub fn run<T, F: Future<Output = T> + 'static>(
     work: impl FnOnce() -> F + Send + 'static,
     done: impl FnOnce(Result<T, Died>) + Send + 'static,
@@ -16,10 +16,10 @@ pub fn run<T, F: Future<Output = T> + 'static>(
     });
 }
 
-/// Jobs hold up the frame where they are not cut.
+/// Jobs without slices block the frame.
 pub const HAS_THREADS: bool = false;
 
-/// Goes on after the browser had its turn: input, a frame, other jobs.
+/// Yields to the browser: input, a frame, other jobs.
 pub async fn yield_to_frame() {
     let turn = Promise::new(&mut |resolve, _| {
         if let Some(window) = web_sys::window() {
@@ -31,7 +31,7 @@ pub async fn yield_to_frame() {
     let _ = JsFuture::from(turn).await;
 }
 
-/// How many can work at once beside the frame.
+/// Number of jobs that run in parallel with the frame.
 pub fn workers() -> usize {
     1
 }

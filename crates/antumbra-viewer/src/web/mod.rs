@@ -1,4 +1,4 @@
-//! The web page, and what a program in a browser has: slices of one thread, addresses and downloads.
+//! The platform of a web page: jobs in slices of one thread, addresses, downloads.
 //!
 //! The page (`index.html`) shows its own text until the viewer draws, and whenever it cannot. It has an object
 //! `window.antumbra` with the functions `ready()` and `failed(message)`; the viewer adds `ask(command)`, which takes a
@@ -13,10 +13,10 @@ pub use dialog::choose_files;
 pub use files::{dropped, keep, load, load_dropped, write};
 pub use jobs::{HAS_THREADS, run as run_job, workers, yield_to_frame};
 
-use crate::app::{App, Keep, Kept};
+use crate::app::{App, PersistentState, SharedState};
 use crate::commands::Command;
-use crate::desk::Desk;
 use crate::open::Source;
+use crate::view_state::ViewState;
 use antumbra::Spec;
 use antumbra::gpu::device::device_descriptor;
 use eframe::egui;
@@ -29,11 +29,11 @@ use wasm_bindgen_futures::spawn_local;
 /// The id of the element that is drawn on.
 const CANVAS: &str = "viewer";
 
-/// What there is one of.
+/// Globals of the page.
 struct Page {
     runner: eframe::WebRunner,
-    canvas: web_sys::HtmlCanvasElement,
-    keep: Keep,
+    targets: web_sys::HtmlCanvasElement,
+    keep: SharedState,
     /// True while the viewer is begun anew.
     restarts: bool,
 }
@@ -56,45 +56,51 @@ pub fn open_page() {
 
 fn page() -> Result<Page, String> {
     let document = web_sys::window().and_then(|w| w.document()).ok_or("there is no page")?;
-    let canvas = document.get_element_by_id(CANVAS).and_then(|e| e.dyn_into().ok());
-    let canvas = canvas.ok_or_else(|| format!("the page has no canvas `{CANVAS}`"))?;
-    let (desk, scene) = asked_by_address()?;
+    let targets = document.get_element_by_id(CANVAS).and_then(|e| e.dyn_into().ok());
+    let targets = targets.ok_or_else(|| format!("the page has no targets `{CANVAS}`"))?;
+    let (view_state, scene) = asked_by_address()?;
     let commands = Arc::default();
     asking::listen(&commands).map_err(|e| files::text(&e))?;
-    let kept =
-        Kept { desk, first: Some(Source::Argument(scene)), commands, faults: Arc::default(), lost: 0, again: false };
+    let kept = PersistentState {
+        view_state,
+        first: Some(Source::Argument(scene)),
+        commands,
+        faults: Arc::default(),
+        lost: 0,
+        again: false,
+    };
     let keep = Arc::new(Mutex::new(Some(kept)));
-    Ok(Page { runner: eframe::WebRunner::new(), canvas, keep, restarts: false })
+    Ok(Page { runner: eframe::WebRunner::new(), targets, keep, restarts: false })
 }
 
 /// `?scene=builtin:fence&technique=pcss:map=512&technique=hard&compare=two&show=error&resolution=0.5`.
-fn asked_by_address() -> Result<(Desk, String), String> {
+fn asked_by_address() -> Result<(ViewState, String), String> {
     let search = web_sys::window().and_then(|w| w.location().search().ok()).unwrap_or_default();
     let asked = web_sys::UrlSearchParams::new_with_str(&search).map_err(|e| files::text(&e))?;
     let specs = asked.get_all("technique").into_iter().filter_map(|v| v.as_string());
     let specs: Result<Vec<Spec>, String> = specs.map(|s| s.parse::<Spec>().map_err(|e| e.to_string())).collect();
-    let mut desk = Desk::new(&specs?);
+    let mut view_state = ViewState::new(&specs?);
     for key in ["compare", "show"] {
         if let Some(value) = asked.get(key) {
-            set(&mut desk, serde_json::json!({ key: value })).map_err(|e| format!("{key}={value}: {e}"))?;
+            set(&mut view_state, serde_json::json!({ key: value })).map_err(|e| format!("{key}={value}: {e}"))?;
         }
     }
     if let Some(value) = asked.get("resolution") {
         let number: f32 = value.parse().map_err(|e| format!("resolution={value}: {e}"))?;
-        set(&mut desk, serde_json::json!({ "resolution": number }))?;
+        set(&mut view_state, serde_json::json!({ "resolution": number }))?;
     }
-    Ok((desk, asked.get("scene").unwrap_or_else(|| crate::FIRST_SCENE.to_owned())))
+    Ok((view_state, asked.get("scene").unwrap_or_else(|| crate::FIRST_SCENE.to_owned())))
 }
 
-fn set(desk: &mut Desk, command: serde_json::Value) -> Result<(), String> {
+fn set(view_state: &mut ViewState, command: serde_json::Value) -> Result<(), String> {
     let command: Command = serde_json::from_value(command).map_err(|e| e.to_string())?;
-    crate::commands::apply(command, desk).map(|_| ())
+    crate::commands::apply(command, view_state).map(|_| ())
 }
 
-/// Starts the viewer on the page; what was kept of one before goes on.
+/// Starts the viewer on the page with its persistent state.
 fn begin() {
-    let Some((runner, canvas, keep)) =
-        PAGE.with_borrow(|p| p.as_ref().map(|p| (p.runner.clone(), p.canvas.clone(), p.keep.clone())))
+    let Some((runner, targets, keep)) =
+        PAGE.with_borrow(|p| p.as_ref().map(|p| (p.runner.clone(), p.targets.clone(), p.keep.clone())))
     else {
         return;
     };
@@ -103,7 +109,7 @@ fn begin() {
             CONTEXT.set(Some(context.egui_ctx.clone()));
             App::new(context, keep).map(|app| Box::new(app) as Box<dyn eframe::App>).map_err(Into::into)
         });
-        let started: Result<(), JsValue> = runner.start(canvas, options(), creator).await;
+        let started: Result<(), JsValue> = runner.start(targets, options(), creator).await;
         PAGE.with_borrow_mut(|p| p.iter_mut().for_each(|p| p.restarts = false));
         match started {
             Ok(()) => asking::tell("ready", ""),
@@ -120,13 +126,13 @@ fn options() -> eframe::WebOptions {
     };
     eframe::WebOptions {
         wgpu_options: WgpuConfiguration { wgpu_setup: WgpuSetup::CreateNew(setup), ..Default::default() },
-        // Noise in the picture would be taken for the technique's.
+        // Dithering would look like noise of the technique.
         dithering: false,
         ..Default::default()
     }
 }
 
-/// Begins anew on a fresh device, once this frame has ended.
+/// Restarts on a new device after this frame.
 pub fn restart(_ctx: &egui::Context) {
     let runner = PAGE.with_borrow_mut(|page| {
         let page = page.as_mut().filter(|p| !p.restarts)?;
@@ -136,13 +142,13 @@ pub fn restart(_ctx: &egui::Context) {
     let Some(runner) = runner else { return };
     spawn_local(async move {
         yield_to_frame().await;
-        // The app hands back what outlives the device when it is dropped.
+        // The app returns the persistent state when it is dropped.
         runner.destroy();
         begin();
     });
 }
 
-/// Has the next frame drawn now.
+/// Requests the next frame.
 fn wake() {
     CONTEXT.with_borrow(|ctx| ctx.iter().for_each(egui::Context::request_repaint));
 }

@@ -18,7 +18,7 @@ pub fn after_a_loss(page: &mut Page) -> Outcome<String> {
     page.shot("after-loss")?;
     let seen =
         format!("{} of {} before, {} of {} after it", before["drawn"], before["scene"], after["drawn"], after["scene"]);
-    let is_same = ["drawn", "scene", "picture", "light", "camera"].iter().all(|key| before[key] == after[key]);
+    let is_same = ["drawn", "scene", "image", "light", "camera"].iter().all(|key| before[key] == after[key]);
     // Chromium warns on the console of work that was under way.
     if is_same && after["frames"].as_u64() > Some(0) { Ok(seen) } else { Err(seen) }
 }
@@ -34,8 +34,8 @@ pub fn resized_to_nothing(page: &mut Page) -> Outcome<String> {
         page.state()?;
     }
     page.browser.value(&format!("{style}.width = {style}.height = '', 0"))?;
-    let size = before["picture"].clone();
-    page.waited_for("a picture of its first size", |s| s["picture"] == size)?;
+    let size = before["image"].clone();
+    page.waited_for("a picture of its first size", |s| s["image"] == size)?;
     // What changes now is drawn again.
     page.ask(&json!({ "show": "visibility" }))?;
     std::thread::sleep(Duration::from_millis(300));
@@ -43,8 +43,8 @@ pub fn resized_to_nothing(page: &mut Page) -> Outcome<String> {
     page.shot("resized")?;
     page.no_errors()?;
     let frames = [&before, &after].map(|s| s["frames"].as_u64().unwrap_or_default());
-    let seen = format!("{size} before and {} after it, {} frames more", after["picture"], frames[1] - frames[0]);
-    if after["picture"] == size && frames[1] > frames[0] { Ok(seen) } else { Err(seen) }
+    let seen = format!("{size} before and {} after it, {} frames more", after["image"], frames[1] - frames[0]);
+    if after["image"] == size && frames[1] > frames[0] { Ok(seen) } else { Err(seen) }
 }
 
 /// A screen with two pixels for one, and back. How many pixels the canvas has then is told by the screen, which an
@@ -55,12 +55,12 @@ pub fn another_scale(page: &mut Page) -> Outcome<String> {
     let sides = page.browser.value("[innerWidth, innerHeight]")?;
     let metrics = json!({ "width": sides[0], "height": sides[1], "deviceScaleFactor": 2, "mobile": false });
     page.browser.call("Emulation.setDeviceMetricsOverride", metrics)?;
-    let seen = page.waited_for("a picture of another size", |s| s["picture"] != before["picture"]);
+    let seen = page.waited_for("a picture of another size", |s| s["image"] != before["picture"]);
     page.shot("scale-2")?;
     page.browser.call("Emulation.clearDeviceMetricsOverride", json!({}))?;
     let seen = seen?;
-    page.waited_for("a picture of its first size", |s| s["picture"] == before["picture"])?;
+    page.waited_for("a picture of its first size", |s| s["image"] == before["picture"])?;
     page.settled()?;
     page.no_errors()?;
-    Ok(format!("{} pixels, {} at scale 2, and back", before["picture"], seen["picture"]))
+    Ok(format!("{} pixels, {} at scale 2, and back", before["image"], seen["picture"]))
 }

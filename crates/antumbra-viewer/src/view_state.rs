@@ -1,85 +1,85 @@
-//! What the user has chosen. It outlives a device that is lost.
+//! The user's choices. They outlive a lost device.
 
 use crate::choice::Choice;
-use crate::inspect::Part;
+use crate::inspector::Part;
 use crate::show::Show;
 use antumbra::Spec;
 use antumbra_scene::{Camera, RectLight, Scene};
 use std::sync::Arc;
 
-/// What is on the two halves of the screen.
+/// Content of the two halves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Compare {
-    /// One technique on all of it.
+    /// One technique in the whole image.
     One,
-    /// A technique on each.
+    /// Two techniques.
     Two,
     /// A technique and the ray-traced truth.
     Truth,
 }
 
-/// A scene that was opened.
+/// An open scene.
 #[derive(Clone)]
-pub struct Open {
-    /// As on the command line: a path or `builtin:NAME`.
+pub struct OpenScene {
+    /// Command-line argument: a path or `builtin:NAME`.
     pub source: String,
-    /// The text of a scene file.
+    /// Text of the scene file, if it is one.
     pub text: Option<String>,
-    /// What was in it.
+    /// The scene.
     pub scene: Arc<Scene>,
 }
 
-/// Which inner picture is looked at.
+/// Selection in the window of debug views.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Inside {
-    /// Of the left or of the right technique.
+pub struct DebugSelection {
+    /// 0 the left technique, 1 the right.
     pub half: usize,
-    /// The picture's name; the first where the technique has none of this name.
+    /// Name of the debug view; the first if the technique has none of this name.
     pub name: String,
-    /// Which part of it.
+    /// Its layer, level and channel.
     pub part: Part,
 }
 
-/// All that a person sets.
+/// Everything that the user sets.
 #[derive(Clone)]
-pub struct Desk {
-    /// What is open.
-    pub open: Option<Open>,
-    /// Where it is seen from.
+pub struct ViewState {
+    /// The open scene.
+    pub open: Option<OpenScene>,
+    /// Camera.
     pub camera: Camera,
-    /// What lights it.
+    /// Light.
     pub light: RectLight,
     /// The techniques of the left and of the right half.
     pub choices: [Choice; 2],
-    /// What the halves hold.
+    /// Content of the halves.
     pub compare: Compare,
-    /// What is shown of them.
+    /// Displayed quantity.
     pub show: Show,
-    /// Where they meet, as a part of the width.
+    /// Position of the divider, as a fraction of the width.
     pub divider: f32,
     /// True while occluders turn.
     pub turning: bool,
-    /// How far they have turned, radians.
+    /// Their rotation, radians.
     pub angle: f32,
-    /// Pixels of the picture for a pixel of the screen; none is 1 on a GPU and 1/2 in software.
+    /// Image pixels per screen pixel; none is 1 on a GPU and 1/2 in software.
     pub resolution: Option<f32>,
-    /// Draws frame after frame, not only when something changes.
+    /// Draws every frame, not only after changes.
     pub keeps_drawing: bool,
     /// Whether the handles of the light are drawn.
     pub handles: bool,
-    /// The inner picture, where that window is open.
-    pub inside: Option<Inside>,
+    /// The window of debug views, if open.
+    pub debug: Option<DebugSelection>,
     /// Whether the graph of times is open.
     pub times: bool,
     /// Whether the help is open.
     pub help: bool,
 }
 
-impl Desk {
-    /// What one finds when one opens the viewer: with one technique asked for, it stands beside the truth; with none,
-    /// the plainest and the default one stand beside each other.
-    pub fn new(specs: &[Spec]) -> Desk {
+impl ViewState {
+    /// The state at the start: one given technique is shown beside the truth; with none,
+    /// `hard` and `backprojection` are shown.
+    pub fn new(specs: &[Spec]) -> ViewState {
         let named = |name| Choice::named(name).expect("it is in the list");
         let (choices, compare) = match specs {
             [] => ([named("hard"), named("backprojection")], Compare::Two),
@@ -87,56 +87,56 @@ impl Desk {
             [left, right, ..] => ([Choice::of_spec(left), Choice::of_spec(right)], Compare::Two),
         };
         let nowhere = antumbra_scene::builtin::build("square").expect("it is in the list");
-        Desk {
+        ViewState {
             open: None,
             camera: nowhere.camera,
             light: nowhere.light,
             choices,
             compare,
-            show: Show::Picture,
+            show: Show::Image,
             divider: 0.5,
             turning: false,
             angle: 0.0,
             resolution: None,
             keeps_drawing: false,
             handles: true,
-            inside: None,
+            debug: None,
             times: true,
             help: false,
         }
     }
 
-    /// Takes a scene, seen and lit as it asks for.
-    pub fn take(&mut self, open: Open) {
+    /// Opens a scene with its own camera and light.
+    pub fn take(&mut self, open: OpenScene) {
         (self.camera, self.light) = (open.scene.camera, open.scene.light);
         (self.turning, self.angle) = (false, 0.0);
         self.open = Some(open);
     }
 
-    /// The same, unless this very scene is open already: its device was lost, and all else stays.
-    pub fn take_unless_open(&mut self, open: Open) {
+    /// The same, unless this scene is open already, as after a lost device.
+    pub fn take_unless_open(&mut self, open: OpenScene) {
         if self.open.as_ref().is_none_or(|o| !Arc::ptr_eq(&o.scene, &open.scene)) {
             self.take(open);
         }
     }
 
-    /// True if the scene is seen and lit as its file says.
+    /// True if camera, light and occluders are the scene's own.
     pub fn is_as_opened(&self) -> bool {
         let Some(open) = &self.open else { return true };
         self.camera == open.scene.camera && self.light == open.scene.light && self.angle == 0.0
     }
 
-    /// Halves that a technique draws.
+    /// Number of techniques.
     pub fn techniques(&self) -> usize {
         if self.compare == Compare::Two { 2 } else { 1 }
     }
 
-    /// True if the window that looks inside is open on this half.
+    /// True if the debug views of this half are open.
     pub fn shows_debug_views(&self, half: usize) -> bool {
-        self.inside.as_ref().is_some_and(|i| i.half.min(self.techniques() - 1) == half)
+        self.debug.as_ref().is_some_and(|i| i.half.min(self.techniques() - 1) == half)
     }
 
-    /// True if the truth is wanted: it is on the right, or errors are shown.
+    /// True if the truth is needed: it is on the right, or errors are shown.
     pub fn wants_truth(&self) -> bool {
         self.compare == Compare::Truth || self.show == Show::Error
     }

@@ -1,70 +1,76 @@
-//! The window that looks into a technique.
+//! The window of a technique's debug views.
 
-use super::{Memory, style};
-use crate::desk::{Desk, Inside};
-use crate::inspect;
+use super::{UiState, style};
+use crate::inspector;
 use crate::session::Session;
+use crate::view_state::{DebugSelection, ViewState};
 use antumbra::gpu::debug_view::{DebugContent, DebugLayout, DebugView};
 use eframe::egui::{self, Color32, Rect, RichText, Sense, Stroke, Vec2, pos2};
 use eframe::egui_wgpu::RenderState;
 
 /// The window, if it is open.
-pub fn show(ctx: &egui::Context, render: &RenderState, desk: &mut Desk, session: &mut Session, memory: &mut Memory) {
-    let Some(mut inside) = desk.inside.clone() else { return };
-    inside.half = inside.half.min(desk.techniques() - 1);
+pub fn show(
+    ctx: &egui::Context,
+    render: &RenderState,
+    view_state: &mut ViewState,
+    session: &mut Session,
+    memory: &mut UiState,
+) {
+    let Some(mut debug) = view_state.debug.clone() else { return };
+    debug.half = debug.half.min(view_state.techniques() - 1);
     let mut open = true;
     egui::Window::new("Debug views")
         .open(&mut open)
         .default_size([380.0, 470.0])
         .default_pos(pos2(24.0, 120.0))
-        .show(ctx, |ui| window(ui, render, session, memory, &mut inside, desk.techniques()));
-    desk.inside = open.then_some(inside);
+        .show(ctx, |ui| window(ui, render, session, memory, &mut debug, view_state.techniques()));
+    view_state.debug = open.then_some(debug);
 }
 
 fn window(
     ui: &mut egui::Ui,
     render: &RenderState,
     session: &mut Session,
-    memory: &mut Memory,
-    inside: &mut Inside,
+    memory: &mut UiState,
+    debug: &mut DebugSelection,
     halves: usize,
 ) {
     if halves > 1 {
         ui.horizontal(|ui| {
             for (i, side) in ["Left", "Right"].into_iter().enumerate() {
-                ui.selectable_value(&mut inside.half, i, side);
+                ui.selectable_value(&mut debug.half, i, side);
             }
         });
     }
-    let Some((choice, technique)) = &session.halves[inside.half].made else {
+    let Some((choice, technique)) = &session.halves[debug.half].made else {
         ui.weak("nothing is drawn yet");
         return;
     };
-    let pictures: Vec<DebugView> = technique.debug_views().into_iter().filter(inspect::is_shown).collect();
-    let Some(picture) = pictures.iter().find(|p| p.name == inside.name).or(pictures.first()) else {
-        ui.weak(format!("{} has nothing to look at", choice.technique.name));
+    let views: Vec<DebugView> = technique.debug_views().into_iter().filter(inspector::is_shown).collect();
+    let Some(view) = views.iter().find(|p| p.name == debug.name).or(views.first()) else {
+        ui.weak(format!("{} has no debug views", choice.technique.name));
         return;
     };
-    picture.name.clone_into(&mut inside.name);
+    view.name.clone_into(&mut debug.name);
     ui.horizontal_wrapped(|ui| {
-        for p in &pictures {
-            if ui.selectable_label(p.name == inside.name, p.name).on_hover_text(p.help).clicked() {
-                p.name.clone_into(&mut inside.name);
+        for p in &views {
+            if ui.selectable_label(p.name == debug.name, p.name).on_hover_text(p.help).clicked() {
+                p.name.clone_into(&mut debug.name);
             }
         }
     });
-    ui.label(RichText::new(picture.help).small().weak());
-    if inspect::parts(&picture.content) != [1; 3] {
-        part(ui, &picture.content, inside);
+    ui.label(RichText::new(view.help).small().weak());
+    if inspector::parts(&view.content) != [1; 3] {
+        part(ui, &view.content, debug);
     }
     session.inspector.poll();
-    session.inspector.draw(&session.gpu, picture, inside.part);
+    session.inspector.draw(&session.gpu, view, debug.part);
     let side = ui.available_width().min(ui.available_height() - 22.0).max(64.0);
     let (rect, _) = ui.allocate_exact_size(Vec2::splat(side), Sense::hover());
-    match &picture.content {
+    match &view.content {
         DebugContent::LightPoints(points) => dots(ui, rect, points),
         content => {
-            let id = *memory.inner.get_or_insert_with(|| {
+            let id = *memory.debug_view.get_or_insert_with(|| {
                 let view = &session.inspector.shown.view;
                 render.renderer.write().register_native_texture(&render.device, view, wgpu::FilterMode::Nearest)
             });
@@ -83,10 +89,10 @@ fn window(
     }
 }
 
-/// Layer, level and channel, where there are several.
-fn part(ui: &mut egui::Ui, content: &DebugContent, inside: &mut Inside) {
-    let [layers, levels, channels] = inspect::parts(content);
-    let part = &mut inside.part;
+/// Choice of layer, mip level and channel.
+fn part(ui: &mut egui::Ui, content: &DebugContent, debug: &mut DebugSelection) {
+    let [layers, levels, channels] = inspector::parts(content);
+    let part = &mut debug.part;
     part.layer = part.layer.min(layers - 1);
     part.level = part.level.min(levels - 1);
     part.channel = part.channel.min(channels - 1);
@@ -106,12 +112,12 @@ fn part(ui: &mut egui::Ui, content: &DebugContent, inside: &mut Inside) {
                 );
             }
         }
-        let [width, height] = inspect::size(content).map(|side| (side >> part.level).max(1));
+        let [width, height] = inspector::size(content).map(|side| (side >> part.level).max(1));
         ui.weak(format!("{width} × {height}"));
     });
 }
 
-/// The widest rectangle of a shape within another.
+/// The largest rectangle of an aspect ratio within another.
 fn fitted(rect: Rect, aspect: f32) -> Rect {
     let size = if aspect > 1.0 {
         Vec2::new(rect.width(), rect.width() / aspect)

@@ -1,21 +1,21 @@
-//! The light by numbers, and by a pad that shows the sky from below.
+//! The light's controls: numbers, and a pad of the sky.
 
 use super::style;
-use crate::desk::Desk;
 use crate::light;
 use crate::session::Session;
+use crate::view_state::ViewState;
 use eframe::egui::{self, Align2, Color32, FontId, Pos2, Sense, Stroke, Vec2, pos2, vec2};
 
 /// Radius of the pad, points.
 const RADIUS: f32 = 44.0;
 
 /// The light's controls.
-pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &Session) {
-    let radius = session.stage.as_ref().map_or(1.0, |s| 0.5 * s.bounds.size().length());
+pub fn show(ui: &mut egui::Ui, view_state: &mut ViewState, session: &Session) {
+    let radius = session.loaded.as_ref().map_or(1.0, |s| 0.5 * s.bounds.size().length());
     ui.horizontal(|ui| {
-        pad(ui, desk);
+        pad(ui, view_state);
         ui.vertical(|ui| {
-            let (azimuth, elevation, mut distance) = light::placed(&desk.light);
+            let (azimuth, elevation, mut distance) = light::placed(&view_state.light);
             let most = (4.0 * radius).max(distance);
             let length = |ui: &mut egui::Ui, value: &mut f32, most: f32, name: &str, help: &str| {
                 let drag =
@@ -28,32 +28,32 @@ pub fn show(ui: &mut egui::Ui, desk: &mut Desk, session: &Session) {
                 .inner
             };
             let largest = 2.0 * radius;
-            length(ui, &mut desk.light.size.x, largest, "wide", "The light's first edge; 0 makes a line");
-            length(ui, &mut desk.light.size.y, largest, "high", "The light's second edge; 0 and 0 make a point");
+            length(ui, &mut view_state.light.size.x, largest, "wide", "The light's first edge; 0 makes a line");
+            length(ui, &mut view_state.light.size.y, largest, "high", "The light's second edge; 0 and 0 make a point");
             if length(ui, &mut distance, most, "away", "Distance from the point that it faces")
                 && distance > 1e-3 * radius
             {
-                desk.light = light::at(&desk.light, azimuth, elevation, distance);
+                view_state.light = light::at(&view_state.light, azimuth, elevation, distance);
             }
-            ui.checkbox(&mut desk.handles, "handles").on_hover_text("Drawn in the picture: drag them (L)");
+            ui.checkbox(&mut view_state.handles, "handles").on_hover_text("Drawn in the image: drag them (L)");
         });
     });
 }
 
-/// Where the light stands in the sky: the middle is overhead, the rim the horizon, the camera at the bottom.
-fn pad(ui: &mut egui::Ui, desk: &mut Desk) {
+/// Direction of the light: overhead at the centre, the horizon at the border, the camera's side at the bottom.
+fn pad(ui: &mut egui::Ui, view_state: &mut ViewState) {
     let (rect, response) = ui.allocate_exact_size(Vec2::splat(2.0 * RADIUS + 8.0), Sense::click_and_drag());
     let response = response
         .on_hover_text("Where the light stands: the middle is overhead, the rim the horizon, your place at the bottom");
-    let to_camera = desk.camera.eye - desk.camera.target;
+    let to_camera = view_state.camera.eye - view_state.camera.target;
     let here = to_camera.x.atan2(to_camera.z);
-    let (azimuth, elevation, distance) = light::placed(&desk.light);
+    let (azimuth, elevation, distance) = light::placed(&view_state.light);
     let middle = rect.center();
     if let Some(p) = response.interact_pointer_pos().filter(|_| response.dragged() || response.clicked()) {
         let v = p - middle;
         let out = (v.length() / RADIUS).min(1.0);
         let angle = if out < 0.03 { azimuth } else { v.x.atan2(v.y) + here };
-        desk.light = light::at(&desk.light, angle, (1.0 - out) * std::f32::consts::FRAC_PI_2, distance);
+        view_state.light = light::at(&view_state.light, angle, (1.0 - out) * std::f32::consts::FRAC_PI_2, distance);
     }
     let painter = ui.painter_at(rect);
     painter.circle(middle, RADIUS, ui.visuals().extreme_bg_color, Stroke::new(1.0, Color32::from_gray(70)));
@@ -63,7 +63,7 @@ fn pad(ui: &mut egui::Ui, desk: &mut Desk) {
     let out = RADIUS * (1.0 - elevation.max(0.0) / std::f32::consts::FRAC_PI_2);
     let at: Pos2 = middle + vec2((azimuth - here).sin(), (azimuth - here).cos()) * out;
     painter.line_segment([middle, at], Stroke::new(1.0, style::ACCENT.gamma_multiply(0.5)));
-    // Below the horizon it is hollow.
+    // A ring marks a light below the horizon.
     let fill = if elevation >= 0.0 { style::ACCENT } else { Color32::TRANSPARENT };
     painter.circle(at, 6.0, fill, Stroke::new(1.5, style::ACCENT));
 }

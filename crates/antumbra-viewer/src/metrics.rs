@@ -1,4 +1,4 @@
-//! The error figures of a half, measured off the frame whenever picture or truth have changed.
+//! Metrics of a half, measured in the background whenever image or truth have changed.
 
 use crate::job::Job;
 use crate::readback::Readback;
@@ -8,17 +8,17 @@ use antumbra::gpu::texture::Texture;
 use antumbra_metrics::{ErrorFigures, Image, error_figures};
 use web_time::{Duration, Instant};
 
-/// Least time from one measurement to the next.
+/// Shortest time between two measurements.
 const PAUSE: Duration = Duration::from_millis(400);
 
-/// What is known, and what is under way.
+/// The last metrics, and the pending measurement.
 #[derive(Default)]
 pub struct Measured {
-    /// The figures, or why there are none.
+    /// The metrics, or the error.
     pub figures: Option<Result<ErrorFigures, String>>,
-    /// Visibility of each pixel as it was last read, with the picture's size.
+    /// The last visibility, with the image's size.
     pub visibility: Option<([u32; 2], Vec<f32>)>,
-    /// What the figures stand for: changes of the picture, and of the truth.
+    /// Inputs of the metrics: numbers of the image and of the truth.
     of: Option<(u64, u64)>,
     changes: u64,
     known_truth: u64,
@@ -30,17 +30,17 @@ pub struct Measured {
 type Compared = (Vec<f32>, Result<ErrorFigures, String>);
 
 impl Measured {
-    /// The picture was drawn anew.
+    /// Records that the image was drawn.
     pub fn outdated(&mut self) {
         self.changes += 1;
     }
 
-    /// True if the figures stand for what is shown.
+    /// True if the metrics belong to the displayed image.
     pub fn is_current(&self) -> bool {
         self.of == Some((self.changes, self.known_truth))
     }
 
-    /// Goes on with what is to be done.
+    /// Takes results and starts the next measurement.
     pub fn work(&mut self, gpu: &Gpu, visibility: &Texture, truth: &Truth, wake: impl Fn() + Send + 'static) {
         if let Some((of, result)) = self.comparing.as_ref().and_then(|(of, job)| Some((*of, job.poll()?))) {
             self.comparing = None;
@@ -50,7 +50,7 @@ impl Measured {
                 self.visibility = Some(([size.width, size.height], values));
             }
         }
-        self.known_truth = truth.picture.lock().map_or(0, |p| p.version);
+        self.known_truth = truth.image.lock().map_or(0, |p| p.version);
         let values = self.reading.as_ref().and_then(|(changes, reading)| Some((*changes, reading.poll_numbers()?)));
         if let Some((changes, values)) = values {
             self.reading = None;
@@ -65,13 +65,13 @@ impl Measured {
     }
 
     fn compare(&mut self, changes: u64, values: Vec<f32>, truth: &Truth, wake: impl Fn() + Send + 'static) {
-        let Ok(picture) = truth.picture.lock() else { return };
-        let ([width, height], of) = (picture.size, (changes, picture.version));
-        if values.len() != picture.visibility.len() {
+        let Ok(image) = truth.image.lock() else { return };
+        let ([width, height], of) = (image.size, (changes, image.version));
+        if values.len() != image.visibility.len() {
             return;
         }
-        let (true_values, valid) = (picture.visibility.clone(), picture.valid.clone());
-        drop(picture);
+        let (true_values, valid) = (image.visibility.clone(), image.valid.clone());
+        drop(image);
         let job = Job::start("Comparing", wake, move |_| async move {
             let image = |data| Image::new(width, height, data);
             let figures = image(&values)

@@ -1,4 +1,4 @@
-//! Looking into a technique: its maps and lists as pictures.
+//! Draws debug views: maps and lists of a technique as images.
 
 use crate::readback::Readback;
 use antumbra::Gpu;
@@ -8,7 +8,7 @@ use antumbra::gpu::texture::{Texture, TextureDescription};
 /// Pixels a side of what is shown.
 const SIDE: u32 = 512;
 
-/// Which part of a texture is looked at.
+/// The displayed part of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Part {
     /// Array layer.
@@ -19,7 +19,7 @@ pub struct Part {
     pub channel: u32,
 }
 
-/// What parts a picture has: layers, levels, channels.
+/// Numbers of layers, mip levels and channels of a debug view.
 pub fn parts(content: &DebugContent) -> [u32; 3] {
     match content {
         DebugContent::Texture(texture) => {
@@ -31,7 +31,7 @@ pub fn parts(content: &DebugContent) -> [u32; 3] {
     }
 }
 
-/// Its texels or places along x and y.
+/// Its size in texels or elements.
 pub fn size(content: &DebugContent) -> [u32; 2] {
     match content {
         DebugContent::Texture(texture) => [texture.width(), texture.height()],
@@ -41,19 +41,19 @@ pub fn size(content: &DebugContent) -> [u32; 2] {
     }
 }
 
-/// True if it can be shown: depth or float texels, one sample each.
-pub fn is_shown(picture: &DebugView) -> bool {
-    let DebugContent::Texture(t) = &picture.content else { return true };
+/// True if it can be shown: depth or float texels with one sample.
+pub fn is_shown(view: &DebugView) -> bool {
+    let DebugContent::Texture(t) = &view.content else { return true };
     let kind = t.format().sample_type(None, None);
     let readable = matches!(kind, Some(wgpu::TextureSampleType::Float { .. } | wgpu::TextureSampleType::Depth));
     readable && t.sample_count() == 1 && t.usage().contains(wgpu::TextureUsages::TEXTURE_BINDING)
 }
 
-/// Draws what a technique lists.
+/// Draws debug views.
 pub struct Inspector {
-    /// `Rgba8Unorm`, what is shown.
+    /// The result, `Rgba8Unorm`.
     pub shown: Texture,
-    /// Smallest and largest value of the texture that was drawn last, zeros apart.
+    /// Smallest and largest non-zero value of the last texture.
     pub range: Option<[f32; 2]>,
     measure: wgpu::ComputePipeline,
     show_values: wgpu::ComputePipeline,
@@ -64,7 +64,7 @@ pub struct Inspector {
     gather_listed: wgpu::ComputePipeline,
     gather_mask: wgpu::ComputePipeline,
     gather_lengths: wgpu::ComputePipeline,
-    /// `R32Float`, numbers of a buffer where they belong.
+    /// `R32Float`: numbers of a buffer at the pixels that they belong to.
     gathered: Option<Texture>,
     look: wgpu::Buffer,
     measured: wgpu::Buffer,
@@ -72,9 +72,9 @@ pub struct Inspector {
 }
 
 impl Inspector {
-    /// Compiles what it needs.
+    /// Compiles its pipelines.
     pub fn new(gpu: &Gpu) -> Inspector {
-        let module = gpu.device.create_shader_module(wgpu::include_wgsl!("inspect.wgsl"));
+        let module = gpu.device.create_shader_module(wgpu::include_wgsl!("inspector.wgsl"));
         let pipeline = |entry: &'static str, layout: Option<&wgpu::PipelineLayout>| {
             gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                 label: Some(entry),
@@ -110,9 +110,9 @@ impl Inspector {
         }
     }
 
-    /// Draws a texture's part or a list.
-    pub fn draw(&mut self, gpu: &Gpu, picture: &DebugView, part: Part) {
-        match &picture.content {
+    /// Draws a part of a texture, or a list.
+    pub fn draw(&mut self, gpu: &Gpu, view: &DebugView, part: Part) {
+        match &view.content {
             DebugContent::Texture(texture) => self.draw_texture(gpu, texture, part),
             DebugContent::Buffer(buffer, layout) => match layout {
                 DebugLayout::Pixels { size } => self.draw_list(gpu, buffer, *size),
@@ -124,7 +124,7 @@ impl Inspector {
         }
     }
 
-    /// Takes what was measured once it has come.
+    /// Takes the measured range once it has arrived.
     pub fn poll(&mut self) {
         if let Some(values) = self.readback.as_ref().and_then(Readback::poll_numbers) {
             let range = <[f32; 2]>::try_from(values).ok();
@@ -146,7 +146,7 @@ impl Inspector {
         self.draw_texture(gpu, &texture, Part::default());
     }
 
-    /// Of a map of many texels the largest number below each pixel that is shown: lines of single texels would be missed.
+    /// Reduces a large map to the largest number per displayed pixel, so that lines of single texels remain.
     fn draw_most(&mut self, gpu: &Gpu, numbers: &wgpu::Buffer, side: u32, are_lists: bool) {
         let size = [side.clamp(1, SIDE); 2];
         let (texture, view) = gathered(&mut self.gathered, gpu, size);
@@ -198,7 +198,7 @@ impl Inspector {
     }
 }
 
-/// Numbers of a picture of this size where they belong.
+/// Scatters numbers of a list to their pixels.
 fn gathered(slot: &mut Option<Texture>, gpu: &Gpu, size: [u32; 2]) -> (wgpu::Texture, wgpu::TextureView) {
     if slot.as_ref().is_none_or(|t| [t.texture.width(), t.texture.height()] != size) {
         let description = TextureDescription::new(size, wgpu::TextureFormat::R32Float, "numbers of a buffer");
@@ -208,7 +208,7 @@ fn gathered(slot: &mut Option<Texture>, gpu: &Gpu, size: [u32; 2]) -> (wgpu::Tex
     (made.texture.clone(), made.view.clone())
 }
 
-/// Workgroups of 64 threads, one thread a place.
+/// Workgroups of 64 threads, one thread per element.
 fn threads(size: [u32; 2]) -> [u32; 2] {
     let groups = (size[0] * size[1]).div_ceil(64).max(1);
     let rows = groups.div_ceil(4096);
@@ -219,7 +219,7 @@ fn entry(binding: u32, resource: wgpu::BindingResource) -> wgpu::BindGroupEntry 
     wgpu::BindGroupEntry { binding, resource }
 }
 
-/// Written out: depth textures are read as floats that are not filtered, and both steps take the same bindings.
+/// Explicit layout: depth textures are read as unfilterable floats, and both steps share the bindings.
 fn values_layout(gpu: &Gpu) -> wgpu::PipelineLayout {
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let kinds = [
