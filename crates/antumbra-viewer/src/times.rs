@@ -55,6 +55,11 @@ fn median(values: impl Iterator<Item = f64>) -> f64 {
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
+/// Sum of the milliseconds of all passes; none if one has none.
+pub fn total(times: &[PassTime]) -> Option<f64> {
+    times.iter().map(|(_, ms)| *ms).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -72,9 +77,4 @@ mod tests {
         }
         assert!(times.frames.len() == KEPT && times.untimed);
     }
-}
-
-/// Sum of the milliseconds of all passes; none if one has none.
-pub fn total(times: &[PassTime]) -> Option<f64> {
-    times.iter().map(|(_, ms)| *ms).sum()
 }
