@@ -1,4 +1,4 @@
-//! The papers' tables and curves, measured anew: techniques are timed and compared with ray-traced references, and the
+//! The papers' tables and curves, measured again: techniques are timed and compared with ray-traced references, and the
 //! results become pages, tables and files. The program `antumbra` calls this library; it adds arguments, progress bars
 //! and exit codes.
 //!

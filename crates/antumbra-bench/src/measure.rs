@@ -113,7 +113,7 @@ pub struct LoadedScene<'a> {
 impl<'a> LoadedScene<'a> {
     /// Uploads a scene for images of `size` pixels.
     pub fn new(gpu: &'a Gpu, monitor: &'a dyn Monitor, scene: &Scene, size: [u32; 2]) -> Result<Self, Error> {
-        gpu.check_size("picture", size[0], size[1])?;
+        gpu.check_size("image", size[0], size[1])?;
         let renderer = block_on(gpu.checked(|| SceneRenderer::new(gpu, scene, size)))?;
         Ok(LoadedScene { gpu, renderer, monitor, size })
     }

@@ -46,7 +46,7 @@ pub fn check_size([width, height]: [u32; 2]) -> Result<(), Error> {
     if (1..=MAX_SIDE).contains(&width) && (1..=MAX_SIDE).contains(&height) {
         return Ok(());
     }
-    Err(antumbra::Error::Size { what: "picture", width, height, max: MAX_SIDE }.into())
+    Err(antumbra::Error::Size { what: "image", width, height, max: MAX_SIDE }.into())
 }
 
 impl Truth {

@@ -29,7 +29,7 @@ pub enum Command {
     Reference(ReferenceArgs),
     /// Compare techniques with the reference: error, milliseconds and megabytes, as a table and as a report with images
     Compare(CompareArgs),
-    /// Measure the tables and curves of papers anew, the paper's numbers beside ours
+    /// Measure the tables and curves of papers again, the paper's numbers beside ours
     #[command(after_help = list::help())]
     Bench(BenchArgs),
     /// Repeat a paper's user study with an image metric
@@ -76,8 +76,8 @@ pub struct ReferenceArgs {
     /// Visible fraction of the light at each pixel to write: .npy (float32, height x width), .exr or .png (16-bit grey)
     #[arg(long, value_name = "FILE")]
     pub visibility: ValuesFile,
-    /// Mask of the pixels whose errors count, to write: .npy (float32, height x width), 1 where a surface that faces the
-    /// light covers the whole pixel, else 0
+    /// Mask of the pixels whose errors count, to write: .npy (float32, height x width), 1 where a surface that faces
+    /// the light covers the whole pixel, else 0
     #[arg(long, value_name = "FILE", value_parser = npy_path)]
     pub valid: Option<PathBuf>,
     #[command(flatten)]
@@ -217,7 +217,7 @@ pub struct TruthArgs {
     /// ~/.cache]
     #[arg(long, value_name = "DIR", env = "ANTUMBRA_CACHE")]
     pub cache: Option<PathBuf>,
-    /// Trace anew and store nothing, regardless of --cache
+    /// Trace again and store nothing, regardless of --cache
     #[arg(long)]
     pub no_cache: bool,
 }

@@ -19,7 +19,7 @@ pub fn catch_ctrl_c() {
             std::process::exit(130);
         }
     };
-    // Without a handler Ctrl-C ends the program as usual, and files are whole all the same.
+    // Without a handler Ctrl-C ends the program as usual, and files are still complete.
     let _ = ctrlc::set_handler(handler);
 }
 

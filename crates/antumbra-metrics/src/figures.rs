@@ -29,9 +29,9 @@ pub struct Figures {
     /// False darkness on lit surfaces: mean of 1 - visibility where the truth is over 0.999.
     pub acne: f64,
     /// Structural similarity [Wang 2004], 1 for equal images, above -1: 11 x 11 Gaussian window, mean over the whole
-    /// picture with pixels that are not valid taken from the truth. Images under 11 pixels repeat their border.
+    /// image; invalid pixels are taken from the truth. Images under 11 pixels repeat their border.
     pub ssim: f64,
-    /// Mean FLIP error over valid pixels [Andersson 2020]: what a viewer notices when flipping between the two
+    /// Mean FLIP error over valid pixels [Andersson 2020]: the visible difference when flipping between the two
     /// visibility images as 8-bit greys at 67 pixels per degree.
     pub flip: f64,
     /// How many pixels each figure stands on.
@@ -53,7 +53,7 @@ pub struct Counts {
     pub lit: u64,
 }
 
-/// [`Figures`] without those that judge by the eye: a fraction of the time, for pictures that change.
+/// [`Figures`] without those that judge by the eye: a fraction of the time, for changing images.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorFigures {
     /// As in [`Figures`].
@@ -74,8 +74,7 @@ pub struct ErrorFigures {
 
 /// Compares `test` with `truth` over the pixels whose entry in `valid` is true (row-major, as the images).
 ///
-/// Values may stray from [0, 1] by a thousandth (rounding) and are clamped. What pixels that are not valid hold does
-/// not matter.
+/// Values may stray from [0, 1] by a thousandth (rounding) and are clamped. The values of invalid pixels do not matter.
 #[cfg(feature = "perceptual")]
 pub fn figures(test: Image, truth: Image, valid: &[bool]) -> Result<Figures, MetricsError> {
     let pair = Pair::new(test, truth, valid)?;
@@ -108,7 +107,7 @@ fn errors_of(pair: &Pair, valid: &[bool]) -> ErrorFigures {
     }
 }
 
-/// Sums over the valid pixels, in double precision: a float would lose the small errors of a large picture.
+/// Sums over the valid pixels, in double precision: a float would lose the small errors of a large image.
 #[derive(Default)]
 struct Sums {
     shadow_error: f64,

@@ -1,4 +1,4 @@
-//! Error as a picture: where a technique is too dark, where too light.
+//! Error as an image: where a technique is too dark, where too light.
 
 use crate::image::{Image, MetricsError, Pair, RgbImage};
 
@@ -9,11 +9,11 @@ pub const HEAT_SCALE: f64 = 0.25;
 pub const INVALID_COLOR: [u8; 3] = [112, 112, 112];
 
 /// The colour of a signed error (test - truth): near-white for none, red where the test is too light (it leaks), blue
-/// where it is too dark. Linear up to ±[`HEAT_SCALE`], then saturated. The sign tells what the magnitude cannot: light
+/// where it is too dark. Linear up to ±[`HEAT_SCALE`], then saturated. The sign shows the direction of the error: light
 /// bleeding from over-dark contact, acne from a penumbra too wide.
 pub fn heat_color(error: f64) -> [u8; 3] {
     let t = 0.5 - 0.5 * (error / HEAT_SCALE).clamp(-1.0, 1.0);
-    // ColorBrewer's RdBu: perceptually even arms, told apart with every common colour blindness.
+    // ColorBrewer's RdBu: perceptually even arms, distinct with every common colour blindness.
     let color = colorous::RED_BLUE.eval_continuous(t);
     [color.r, color.g, color.b]
 }

@@ -1,4 +1,4 @@
-//! The images that go in and out, and what can be wrong with them.
+//! Images, and their errors.
 
 use std::fmt;
 
@@ -40,7 +40,7 @@ impl<'a> Image<'a> {
     }
 }
 
-/// An owned picture of 8-bit sRGB triples: row-major, row 0 on top.
+/// An owned image of 8-bit sRGB triples: row-major, row 0 on top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RgbImage {
     /// Width in pixels.
@@ -121,7 +121,7 @@ pub enum MetricsError {
         x: u32,
         /// Row, from the top.
         y: u32,
-        /// What it holds.
+        /// Number of values.
         value: f32,
     },
 }
@@ -156,7 +156,7 @@ impl Pair {
     }
 }
 
-/// Clamped values; what is not valid may hold anything and becomes lit where it is not a number.
+/// Clamped values; invalid pixels may hold anything; NaN becomes lit.
 fn checked(image: Image, valid: &[bool], role: Role) -> Result<Vec<f32>, MetricsError> {
     let check = |(i, (&value, &valid)): (usize, (&f32, &bool))| {
         if (-RANGE_SLACK..=1.0 + RANGE_SLACK).contains(&value) {

@@ -5,7 +5,7 @@ use glam::{Vec3, Vec3A};
 use obvhs::bvh2::{Bvh2, leaf_collapser::collapse, node::Bvh2Node, reinsertion::ReinsertionOptimizer};
 use obvhs::{BvhBuildParams, aabb, ploc::PlocBuilder};
 
-/// A box and what is in it: two nodes side by side, or a run of triangles.
+/// A box and its content: two nodes side by side, or a run of triangles.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub min: Vec3,

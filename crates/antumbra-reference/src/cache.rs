@@ -1,6 +1,6 @@
-//! References kept in files, so that nobody waits for the same picture twice.
+//! References kept in files: no image is traced twice.
 
-use crate::picture::{Reference, ReferenceError, Settings, trace};
+use crate::image::{Reference, ReferenceError, Settings, trace};
 use antumbra_scene::Scene;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -14,15 +14,15 @@ const MAGIC: &[u8; 8] = b"antumbra";
 /// A reference and where it came from.
 #[derive(Debug)]
 pub struct Cached {
-    /// The picture.
+    /// The image.
     pub reference: Reference,
     /// True if it was read from a file, false if it was traced now.
     pub was_stored: bool,
-    /// The file that holds it, or why it could not be written: the picture is good all the same.
+    /// The file that holds it, or why it could not be written: the image is still valid.
     pub stored: Result<PathBuf, io::Error>,
 }
 
-/// Reads the picture from `dir`, or traces it and stores it there. `dir` is created if need be.
+/// Reads the image from `dir`, or traces and stores it. `dir` is created if need be.
 ///
 /// A file is used only if it is whole and belongs to this scene and these settings; a damaged one is replaced. Files
 /// appear complete or not at all, also with several programs at work in one folder.
@@ -43,7 +43,7 @@ pub fn trace_cached(
     Ok(Cached { reference, was_stored: false, stored })
 }
 
-/// A hash of everything that a picture depends on, and of nothing else: names and colours do not count.
+/// A hash of exactly the inputs of an image: names and colours do not count.
 pub fn key(scene: &Scene, settings: &Settings) -> blake3::Hash {
     let mut h = blake3::Hasher::new();
     h.update(&VERSION.to_le_bytes());
@@ -110,7 +110,7 @@ fn encode(r: &Reference, key: &blake3::Hash) -> Vec<u8> {
     bytes
 }
 
-/// The picture in `bytes`, if they are whole and what was asked for.
+/// The image in `bytes`, if they are complete and of the same inputs.
 fn decode(bytes: &[u8], key: &blake3::Hash, settings: &Settings) -> Option<Reference> {
     let (body, hash) = bytes.split_last_chunk::<32>()?;
     if blake3::hash(body).as_bytes() != hash {

@@ -4,7 +4,7 @@ use antumbra_scene::{Material, Texture, Wrap};
 use glam::{DVec3, Vec2};
 use std::sync::Arc;
 
-/// What decides whether a point of one masked triangle is there.
+/// Alpha test of a point of a masked triangle.
 pub(crate) struct Cutout {
     uvs: [Vec2; 3],
     factor: f32,

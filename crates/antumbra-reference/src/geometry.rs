@@ -51,7 +51,7 @@ pub(crate) struct Source {
     pub triangle: u32,
 }
 
-/// All triangles that a ray can hit, with what decides about their holes.
+/// All triangles that a ray can hit, with the data of their alpha tests.
 pub(crate) struct Geometry {
     pub triangles: Vec<Triangle>,
     pub sources: Vec<Source>,

@@ -53,7 +53,7 @@ impl Packet {
     }
 }
 
-/// What packets are traced against.
+/// The hierarchy that packets are traced against.
 #[derive(Clone, Copy)]
 pub(crate) struct Target<'a> {
     pub bvh: &'a Bvh,
@@ -61,7 +61,7 @@ pub(crate) struct Target<'a> {
     pub level: Level,
 }
 
-/// What a traversal needs besides, kept from call to call.
+/// Buffers of a traversal, kept from call to call.
 #[derive(Default)]
 pub(crate) struct Scratch {
     stack: Vec<u32>,
@@ -310,7 +310,7 @@ impl<S: Simd> Rays<S> {
     }
 
     /// The rays that pass inside of the triangle's edges, from either side, and those for which an edge function came
-    /// out as zero, so that only double precision tells [Woop 2013].
+    /// out as zero, which double precision decides [Woop 2013].
     #[inline(always)]
     fn inside<const Z: usize>(&self, simd: S, triangle: &Triangle) -> (mask32x8<S>, mask32x8<S>) {
         let a = self.sheared::<Z>(simd, triangle.vertices[0]);
@@ -327,7 +327,7 @@ impl<S: Simd> Rays<S> {
     }
 }
 
-/// A direction of zero becomes tiny: the box's padding keeps what lies in a face inside.
+/// A direction of zero becomes tiny: the box's padding keeps triangles in a face inside.
 #[inline(always)]
 fn reciprocal<S: Simd>(simd: S, d: f32x8<S>) -> f32x8<S> {
     f32x8::splat(simd, 1.0) / d.abs().max(f32x8::splat(simd, 1e-30)).copysign(d)

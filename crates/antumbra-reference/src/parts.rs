@@ -1,5 +1,5 @@
-//! A hierarchy that is built part by part: the triangles are halved until each part is small, each part gets a tree of its
-//! own, and the halves are the tree above them.
+//! A hierarchy that is built part by part: the triangles are halved until each part is small, each part gets a tree of
+//! its own, and the halves are the tree above them.
 
 use crate::bvh::{Bounds, Bvh, Node, tree};
 use crate::geometry::{Geometry, Triangle};
@@ -105,7 +105,7 @@ fn add_part(
     places.for_each(|i| ordered.sources.push(geometry.sources[i]));
     let mut moved = part.nodes.iter().map(|n| {
         let node = Node::of(n, scale);
-        // All but the root, which has its place, follow what is there.
+        // All but the root are appended.
         let first = if node.count > 0 { node.first + triangle_base } else { node.first - 1 + node_base };
         Node { first, ..node }
     });

@@ -20,7 +20,7 @@ pub(crate) struct Pattern {
     seed: u64,
 }
 
-/// What makes a pixel's samples its own.
+/// Seed of a pixel's samples.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shuffle {
     /// Exclusive-or of the fixed-point coordinates: keeps every property of a net.
@@ -30,7 +30,7 @@ pub(crate) struct Shuffle {
 }
 
 impl Pattern {
-    /// `per_sub_pixel` points of the light for each of `sub_pixels`; `extent` tells along which edge the light has any.
+    /// `per_sub_pixel` points of the light for each of `sub_pixels`; `extent` is 0 along edges without length.
     pub fn new(sub_pixels: u32, per_sub_pixel: u32, extent: [bool; 2], seed: u64) -> Pattern {
         let scramble = [mix(seed, 1) as u32, mix(seed, 2) as u32];
         let coordinate = |k: usize, x: u32| if extent[k] { owen_scramble(x, scramble[k]) } else { 0 };

@@ -45,8 +45,8 @@ pub struct Hit {
     pub(crate) id: u32,
 }
 
-/// [`Tracer::new`] piece by piece, for programs with one thread: an iterator whose every step takes some milliseconds, of
-/// large scenes some tens of them. The tree is another one, and as good within a few percent.
+/// [`Tracer::new`] piece by piece, for programs with one thread: an iterator whose every step takes some milliseconds,
+/// of large scenes some tens of them. The tree is another one, and as good within a few percent.
 pub struct TracerBuild<'a> {
     scene: &'a Scene,
     instances: usize,
@@ -91,7 +91,7 @@ pub struct Tracer {
 }
 
 impl Tracer {
-    /// Flattens the scene's instances and builds the hierarchy: about a microsecond a triangle, 150 bytes a triangle.
+    /// Flattens the scene's instances and builds the hierarchy: about a microsecond a triangle, 150 bytes per triangle.
     pub fn new(scene: &Scene) -> Tracer {
         let mut geometry = Geometry::of_scene(scene);
         let bvh = Bvh::build(&mut geometry);

@@ -1,8 +1,8 @@
-//! Pixels of one picture.
+//! Pixels of one image.
 
+use crate::image::Settings;
 use crate::packet::{LANES, NONE, Packet, Scratch};
 use crate::pattern::{Pattern, Shuffle};
-use crate::picture::Settings;
 use crate::shaft::Shaft;
 use crate::tracer::{Hit, Tracer};
 use antumbra_scene::{Aabb, Camera, RectLight};
@@ -16,7 +16,7 @@ const SHADOW_END: f32 = 1.0 - 1e-5;
 /// Smallest cosines at the receiver and at the light for a pixel to be valid.
 const LEAST_COSINE: f64 = 0.1;
 
-/// What tracing found out about a pixel.
+/// Result of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Fraction of the light's area that is seen, mean over the sub-pixels; those that see no surface count as lit.
@@ -29,7 +29,7 @@ pub struct Pixel {
     pub rays: u32,
 }
 
-/// One picture to be traced: scene, camera, light and settings. Its pixels can be asked for in any order, from any
+/// One image to be traced: scene, camera, light and settings. Its pixels can be asked for in any order, from any
 /// thread, and come out the same.
 pub struct View<'a> {
     tracer: &'a Tracer,
@@ -63,7 +63,7 @@ struct Buffers {
 }
 
 impl<'a> View<'a> {
-    /// The picture of `tracer`'s scene that `camera` and `light` give; usually those of the same scene.
+    /// The image of `tracer`'s scene for `camera` and `light`; usually those of the same scene.
     pub fn new(tracer: &'a Tracer, camera: &Camera, light: &RectLight, settings: &Settings) -> View<'a> {
         let extent = [light.size.x > 0.0, light.size.y > 0.0];
         let per_sub_pixel =
@@ -150,8 +150,8 @@ impl<'a> View<'a> {
         valid
     }
 
-    /// Direction through a point of the picture, in pixels; as long as the view depth of 1 metre, so that the near and
-    /// the far plane are at fixed distances.
+    /// Direction through an image position, in pixels; as long as the view depth of 1 metre, so that the near and the
+    /// far plane are at fixed distances.
     fn camera_ray(&self, p: Vec2) -> Vec3 {
         let (right, up, forward) = self.camera.basis();
         let tan = (0.5 * f64::from(self.camera.fov_y_deg).to_radians()).tan();
@@ -205,8 +205,8 @@ impl<'a> View<'a> {
     ///
     /// Each sample has a stratum of the light's area of its own; neighbours in the list are neighbours on the light.
     /// The squared difference of two neighbours overestimates the sum of their variances by the difference of their
-    /// strata, so the estimate is on the safe side [Cochran 1977, section 5A.12]. Where all agree, what is smaller
-    /// than a stratum may have been missed: half a stratum is that error's largest standard deviation.
+    /// strata, so the estimate is on the safe side [Cochran 1977, section 5A.12]. Where all agree, details smaller than
+    /// a stratum may have been missed: half a stratum is that error's largest standard deviation.
     fn count(&self, valid: bool, buffers: &Buffers) -> Pixel {
         let n = self.pattern.light.len() as f32;
         let (mut seen, mut differing, mut rays) = (0, 0, 0);

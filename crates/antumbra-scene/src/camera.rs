@@ -7,7 +7,7 @@ use glam::{Mat4, Vec3};
 pub struct Camera {
     /// Position.
     pub eye: Vec3,
-    /// The point in the middle of the picture.
+    /// The point at the centre of the image.
     pub target: Vec3,
     /// Up direction, not parallel to the view direction.
     pub up: Vec3,

@@ -1,4 +1,4 @@
-//! What can be wrong with a scene, said so that the reader can mend it.
+//! Errors of scenes.
 
 use std::fmt;
 
@@ -9,17 +9,17 @@ pub enum SceneError {
     /// The scene argument names nothing that can be read.
     #[error("`{argument}`: {message}")]
     Argument {
-        /// What the user wrote.
+        /// The argument.
         argument: String,
-        /// What is wrong with it and what would be right.
+        /// The error, and a right form.
         message: String,
     },
     /// A built-in scene's name or one of its parameters is wrong.
     #[error("`builtin:{spec}`: {message}")]
     Builtin {
-        /// What follows `builtin:`.
+        /// The part after `builtin:`.
         spec: String,
-        /// What is wrong with it and what would be right.
+        /// The error, and a right form.
         message: String,
     },
     /// A file, or one that it refers to, cannot be read.
@@ -29,7 +29,7 @@ pub enum SceneError {
         file: String,
         /// The file that refers to it, if it was not named by the user.
         referrer: Option<String>,
-        /// What the operating system said.
+        /// The operating system's message.
         source: std::io::Error,
     },
     /// The file does not follow its format.
@@ -39,7 +39,7 @@ pub enum SceneError {
         file: String,
         /// Where in the file.
         place: Place,
-        /// What is wrong there and what was expected.
+        /// The error, and the expected content.
         problem: String,
     },
     /// The file follows its format and uses a part of it that is not read here.
@@ -49,9 +49,9 @@ pub enum SceneError {
         file: String,
         /// Where in the file.
         place: Place,
-        /// What is not supported.
+        /// The unsupported feature.
         feature: String,
-        /// What to do instead.
+        /// A workaround.
         advice: String,
     },
     /// A vertex is not a point.
@@ -63,7 +63,7 @@ pub enum SceneError {
         place: Place,
         /// Number of the vertex, from 0.
         vertex: usize,
-        /// What the file says.
+        /// The value in the file.
         position: [f32; 3],
     },
     /// A vertex is too far away to be rendered in single precision.
@@ -92,7 +92,7 @@ pub enum SceneError {
         index: i64,
         /// How many there are.
         count: usize,
-        /// What is counted, in the plural.
+        /// The counted objects, in the plural.
         what: &'static str,
     },
     /// The file says that it holds more than it does.
@@ -104,7 +104,7 @@ pub enum SceneError {
         file: String,
         /// Where in the file.
         place: Place,
-        /// What does not fit.
+        /// The sizes that do not fit.
         what: String,
         /// Bytes that the claim needs.
         needed: u128,
@@ -116,7 +116,7 @@ pub enum SceneError {
     NoTriangles {
         /// The file's name.
         file: String,
-        /// What to look for.
+        /// The usual cause.
         advice: String,
     },
 }

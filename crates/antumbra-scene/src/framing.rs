@@ -8,9 +8,9 @@ const FOV_Y_DEG: f32 = 35.0;
 /// Three-quarter view: degrees from the +Z axis towards +X, and above the horizon.
 const YAW_DEG: f32 = 35.0;
 const PITCH_DEG: f32 = 25.0;
-/// Part of the picture's height and width that the model may fill: its shadow wants room.
+/// Fraction of the image's height and width that the model may fill: its shadow needs space.
 const FILLED: f32 = 0.6;
-/// The model stands this part of half the picture's width to the left, as its shadow falls to the right.
+/// Offset of the model to the left, as a fraction of half the image's width: its shadow falls to the right.
 const LEFT_OF_MIDDLE: f32 = 0.1;
 /// Where the light stands, seen from the model: degrees to the left of the camera and above the horizon.
 const LIGHT_AZIMUTH_DEG: f32 = 75.0;
@@ -19,15 +19,15 @@ const LIGHT_ELEVATION_DEG: f32 = 50.0;
 /// where things touch, large enough for a soft one behind the model's top.
 const LIGHT_DISTANCE: f32 = 4.0;
 const LIGHT_EDGE: f32 = 1.0 / 8.0;
-/// Width to height of the widest picture that the ground fills.
+/// Aspect ratio of the widest image that the ground fills.
 const WIDEST: f32 = 2.0;
 /// More vertices than this tell no more about where a model ends.
 const SAMPLES: usize = 200_000;
 
 impl Model {
-    /// A whole scene. What the file lacks is chosen from what it shows: a camera that sees it in three-quarter view,
-    /// a light from above and from the camera's left, and for a model with neither camera nor light a ground to stand
-    /// on, which takes shadows and casts none.
+    /// A whole scene. Missing camera, light and ground are chosen from the model: a camera that sees it in
+    /// three-quarter view, a light from above and from the camera's left, and for a model with neither camera nor light
+    /// a ground to stand on, which takes shadows and casts none.
     pub fn into_scene(self) -> Scene {
         let bare = self.camera.is_none() && self.light.is_none();
         self.framed(bare)
@@ -98,7 +98,7 @@ fn radius_of(bounds: &Aabb) -> f32 {
     (0.5 * bounds.size().length()).max(1e-5 * reach).max(1e-6)
 }
 
-/// Looks at the points from the front, the right and above, from where they fill the wanted part of the picture.
+/// A camera at the front, right and above, from which the points fill the wanted fraction of the image.
 fn camera_for(points: &[Vec3], bounds: &Aabb) -> Camera {
     let (yaw, pitch) = (YAW_DEG.to_radians(), PITCH_DEG.to_radians());
     let backward = Vec3::new(yaw.sin() * pitch.cos(), pitch.sin(), yaw.cos() * pitch.cos());
@@ -146,7 +146,7 @@ fn light_for(bounds: &Aabb, camera: &Camera) -> RectLight {
     }
 }
 
-/// How far from the middle the ground is seen in the widest picture; `None` if the horizon is in it.
+/// Distance from the centre at which the widest image sees the ground; `None` if the horizon is in it.
 fn ground_reach(camera: &Camera, y: f32) -> Option<f32> {
     let (right, up, forward) = camera.basis();
     let tangent = (0.5 * camera.fov_y_deg).to_radians().tan();

@@ -13,7 +13,7 @@ pub struct RectLight {
     pub up: Vec3,
     /// Edge lengths in metres, each >= 0.
     pub size: Vec2,
-    /// Opening of the shadow frustum in degrees, or `None` to fit it to what can cast on what is seen.
+    /// Opening of the shadow frustum in degrees, or `None` to fit it to the casters of visible shadows.
     pub shadow_fov_deg: Option<f32>,
 }
 

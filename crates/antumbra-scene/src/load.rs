@@ -1,4 +1,4 @@
-//! From what a user writes to a scene.
+//! From a scene argument to a scene.
 
 use crate::read_file::ReadFile;
 use crate::{Scene, SceneError, builtin};
@@ -89,7 +89,7 @@ mod files {
         } else if extension(path) == "json" || extension(path) == "toml" {
             format!("a scene file cannot be used here; give a model: {MODELS}")
         } else if path.exists() || (cfg!(target_arch = "wasm32") && path.extension().is_some()) {
-            // A page has no disk: what it was given is there.
+            // A page has no disk: the given parts are kept.
             format!(
                 "this kind of file is not read; give a model ({MODELS}), a scene file (.toml or .json) or builtin:NAME"
             )

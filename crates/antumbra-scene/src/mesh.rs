@@ -1,4 +1,4 @@
-//! Triangles and what they are made of.
+//! Triangles and materials.
 
 use crate::Aabb;
 use glam::{Vec2, Vec3, Vec4};
@@ -63,7 +63,7 @@ impl Material {
     }
 }
 
-/// What happens outside of [0, 1].
+/// Addressing outside of [0, 1].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// Start again.
@@ -71,14 +71,14 @@ pub enum Wrap {
     Repeat,
     /// Every second copy is mirrored.
     Mirror,
-    /// The edge's texel goes on.
+    /// The edge texel is repeated.
     Clamp,
 }
 
-/// An 8-bit RGBA picture, row 0 at v = 0 (glTF's convention).
+/// An 8-bit RGBA image, row 0 at v = 0 (glTF's convention).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// Texels a row.
+    /// Texels per row.
     pub width: u32,
     /// Rows.
     pub height: u32,

@@ -1,4 +1,4 @@
-//! What is drawn, from where, and what lights it.
+//! A scene: meshes, materials, camera, light.
 
 use crate::{Aabb, Camera, Material, Mesh, RectLight};
 use glam::Affine3A;
@@ -21,13 +21,13 @@ pub struct Scene {
     pub name: String,
     /// Triangle meshes in object space.
     pub meshes: Vec<Mesh>,
-    /// What the meshes are made of.
+    /// Materials of the meshes.
     pub materials: Vec<Material>,
     /// Where the meshes stand.
     pub instances: Vec<Instance>,
     /// Where it is seen from.
     pub camera: Camera,
-    /// What lights it.
+    /// The light.
     pub light: RectLight,
     /// Picture size in pixels, if the file asks for one.
     pub size: Option<(u32, u32)>,

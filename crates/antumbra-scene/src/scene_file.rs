@@ -96,7 +96,7 @@ fn of_scene(scene: Scene) -> Model {
     Model { name, meshes, materials, instances, camera: Some(camera), light: Some(light) }
 }
 
-/// Turns entries into what they mean, or says which key is wrong.
+/// Converts entries; errors name the key.
 struct Check<'a> {
     file: &'a str,
 }

@@ -5,7 +5,7 @@ use antumbra::Gpu;
 use antumbra::gpu::debug_view::{DebugContent, DebugLayout, DebugView};
 use antumbra::gpu::texture::{Texture, TextureDescription};
 
-/// Pixels a side of what is shown.
+/// Pixels per side of what is shown.
 const SIDE: u32 = 512;
 
 /// The displayed part of a texture.

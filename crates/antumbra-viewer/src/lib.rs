@@ -1,9 +1,9 @@
 //! The interactive viewer: techniques side by side, or beside the ray-traced truth, in a window.
 //!
-//! [`run`] opens the window. [`app`] is the program, [`ui`] its controls, [`session`] what goes on behind them: scenes are
-//! opened ([`open`]), techniques compiled, the truth traced ([`truth`]) and errors measured ([`figures`]) in the background
-//! ([`job`]). [`view_state`] is what the user has chosen; it outlives the graphics device, which may be lost at any time.
-//! [`commands`] drive all of it from outside, for tests.
+//! [`run`] opens the window. [`app`] is the program, [`ui`] its controls, [`session`] what goes on behind them: scenes
+//! are opened ([`open`]), techniques compiled, the truth traced ([`truth`]) and errors measured ([`metrics`]) in the
+//! background ([`job`]). [`view_state`] is what the user has chosen; it outlives the graphics device, which may be lost
+//! at any time. [`commands`] drive all of it from outside, for tests.
 #![deny(missing_docs)]
 
 pub mod app;

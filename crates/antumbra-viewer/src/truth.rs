@@ -82,7 +82,7 @@ impl TracedImage {
         self.rows.iter().map(of).sum::<f32>() / self.rows.len().max(1) as f32
     }
 
-    /// Shadow rays a pixel of the coarsest row.
+    /// Shadow rays per pixel of the coarsest row.
     pub fn rays(&self) -> u32 {
         let least = self.rows.iter().copied().min().unwrap_or(0);
         least.checked_sub(1).map_or(0, |level| LEVELS[usize::from(level)][0])
@@ -98,7 +98,7 @@ pub enum Progress {
     Tracing {
         /// Fraction of all rays.
         done: f32,
-        /// Shadow rays a pixel of the coarsest row.
+        /// Shadow rays per pixel of the coarsest row.
         rays: u32,
     },
     /// The final level is complete.
@@ -111,8 +111,8 @@ impl std::fmt::Display for Progress {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Progress::Preparing => write!(f, "sorting triangles for rays …"),
-            Progress::Tracing { done, rays } => write!(f, "{:.0} %   {rays} rays a pixel", 100.0 * done),
-            Progress::Done => write!(f, "1024 rays a pixel"),
+            Progress::Tracing { done, rays } => write!(f, "{:.0} %   {rays} rays per pixel", 100.0 * done),
+            Progress::Done => write!(f, "1024 rays per pixel"),
             Progress::Died(why) => write!(f, "cannot be traced: {why}"),
         }
     }

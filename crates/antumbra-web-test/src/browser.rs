@@ -15,9 +15,9 @@ pub struct Browser {
     /// Talks of the page.
     page: WebSocket<TcpStream>,
     calls: u64,
-    /// Errors on the page's console, and exceptions that nobody caught.
+    /// Errors on the page's console, and uncaught exceptions.
     pub errors: Vec<String>,
-    /// What else the page has told, by name, since it was last asked for.
+    /// Other events of the page, by name, since the last query.
     events: Vec<Value>,
     _folder: tempfile::TempDir,
 }
@@ -101,7 +101,7 @@ impl Browser {
         }
     }
 
-    /// Waits until the page tells of an event of this name; what it told before has been forgotten by [`Browser::forget`].
+    /// Waits for an event of this name; [`Browser::forget`] drops earlier ones.
     pub fn event(&mut self, name: &str, most: Duration) -> Outcome<Value> {
         let start = Instant::now();
         loop {
@@ -118,12 +118,12 @@ impl Browser {
         }
     }
 
-    /// Forgets what the page has told so far.
+    /// Drops the events so far.
     pub fn forget(&mut self) {
         self.events.clear();
     }
 
-    /// Goes to an address; what is on the console counts from here.
+    /// Goes to an address; the console's messages count from here.
     pub fn open(&mut self, address: &str) -> Outcome<()> {
         self.errors.clear();
         self.forget();
@@ -154,7 +154,7 @@ impl Browser {
         Ok(())
     }
 
-    /// What is seen, as a PNG file.
+    /// A screenshot as a PNG file.
     pub fn screenshot(&mut self) -> Outcome<Vec<u8>> {
         use base64::Engine;
         let answer = self.call("Page.captureScreenshot", json!({ "format": "png" }))?;
@@ -227,7 +227,7 @@ fn connect(port: u16, path: &str) -> Outcome<WebSocket<TcpStream>> {
     Ok(socket)
 }
 
-/// The error that an event tells of.
+/// The error of an event.
 fn error_in(event: &Value) -> Option<String> {
     let parameters = &event["params"];
     match event["method"].as_str()? {

@@ -1,4 +1,4 @@
-//! What people do to a page: fingers, files, downloads, and what happens to it.
+//! User actions on a page: touch, files, downloads, and external events.
 
 mod files;
 mod goes_on;
@@ -10,10 +10,10 @@ use crate::Outcome;
 use crate::page::Page;
 use serde_json::Value;
 
-/// A check gives what was seen, or what was wrong with it.
+/// A check returns its observation, or the error.
 pub type Check = fn(&mut Page) -> Outcome<String>;
 
-/// All checks by name; each opens the page anew.
+/// All checks by name; each opens the page again.
 pub const CHECKS: [(&str, Check); 11] = [
     ("touch: one finger turns the scene", touch::one_finger_turns),
     ("touch: two fingers zoom", touch::two_fingers_zoom),
@@ -45,7 +45,7 @@ fn length(v: [f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-/// Where the camera stands, and what it looks at.
+/// Eye and target of the camera.
 fn camera(state: &Value) -> Outcome<[[f64; 3]; 2]> {
     Ok([vector(&state["camera"][0])?, vector(&state["camera"][1])?])
 }

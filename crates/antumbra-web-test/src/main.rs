@@ -1,8 +1,9 @@
 //! Drives the page of the viewer in a headless browser: `cargo xtask test-web`.
 //!
 //! Called with the page's folder, and maybe with SPECs in the place of the usual three, or `all`. It compares the error
-//! of each technique with what the program `antumbra` gives for the same scene and size, does to the page what people do
-//! ([`checks`]), and keeps screenshots beside the folder. `--check NAME` does only the checks whose names have that part.
+//! of each technique with what the program `antumbra` gives for the same scene and size, repeats user actions
+//! ([`checks`]), and keeps screenshots beside the folder. `--check NAME` does only the checks whose names have that
+//! part.
 
 mod browser;
 mod checks;
@@ -19,7 +20,7 @@ use std::time::{Duration, Instant};
 
 const SCENE: &str = "builtin:fence";
 const SPECS: [&str; 3] = ["hard", "pcss", "backprojection"];
-/// The window, pixels; the picture is what its panels leave, at this part of the resolution.
+/// The window, pixels; the image fills the rest beside the panels, at this fraction of the resolution.
 const WINDOW: [u32; 2] = [760, 640];
 const RESOLUTION: f32 = 0.25;
 /// How far the errors on the page and of the program may be apart.
@@ -29,7 +30,7 @@ const PATIENCE: Duration = Duration::from_secs(420);
 
 type Outcome<T> = Result<T, String>;
 
-/// What to drive it with.
+/// Browser program.
 struct Arguments {
     specs: Vec<String>,
     /// A part of the names of the checks that are wanted, and nothing else.
@@ -66,7 +67,7 @@ fn chosen(arguments: &[String]) -> Outcome<Arguments> {
     }
 }
 
-/// What the program prints.
+/// Output of the program.
 fn antumbra(arguments: &[&str]) -> Outcome<String> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let called = Command::new(cargo).args(["run", "--quiet", "--bin", "antumbra", "--"]).args(arguments).output();
@@ -89,7 +90,7 @@ fn run(page: &Path, arguments: &Arguments) -> Outcome<()> {
     all
 }
 
-/// Everything, one after the other; the first that is wrong ends it.
+/// All checks in sequence; the first that is wrong ends it.
 fn drive(page: &mut Page, arguments: &Arguments) -> Outcome<()> {
     if arguments.check.is_none() {
         says_what_is_missing(page)?;
@@ -105,7 +106,7 @@ fn drive(page: &mut Page, arguments: &Arguments) -> Outcome<()> {
     Ok(())
 }
 
-/// What the page says at the end, and the error of each technique.
+/// The page's final state, and the error of each technique.
 fn draw(page: &mut Page, specs: &[String]) -> Outcome<(Value, Vec<f64>)> {
     let start = Instant::now();
     let first = &specs[0];
@@ -142,7 +143,7 @@ fn says_what_is_missing(page: &mut Page) -> Outcome<()> {
     if said { Ok(()) } else { Err(format!("without WebGPU the page says: {text}")) }
 }
 
-/// The average error of what is drawn, if all went well.
+/// The average error of the drawn technique.
 fn error_of(state: &Value, spec: &str) -> Outcome<f64> {
     for key in ["errors", "faults"] {
         if state[key].as_array().is_none_or(|list| !list.is_empty()) {
@@ -158,7 +159,7 @@ fn error_of(state: &Value, spec: &str) -> Outcome<f64> {
     state["average_error"][0].as_f64().ok_or_else(|| format!("there is no error: {state}"))
 }
 
-/// Against what the program gives for the same scene and size.
+/// Comparison with the program for the same scene and size.
 fn compare(state: &Value, specs: &[String], errors: &[f64]) -> Outcome<()> {
     let report = tempfile::tempdir().map_err(|e| e.to_string())?;
     let size = format!("{}x{}", state["image"][0], state["picture"][1]);

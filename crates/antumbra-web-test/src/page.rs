@@ -1,4 +1,4 @@
-//! The viewer's page in the browser: its commands, and what they answer.
+//! The viewer's page in the browser: its commands and replies.
 
 use crate::browser::Browser;
 use crate::{Outcome, PATIENCE};
@@ -33,12 +33,12 @@ impl Page {
         }
     }
 
-    /// What is on the screen.
+    /// The state.
     pub fn state(&mut self) -> Outcome<Value> {
         Ok(self.ask(&json!("state"))?["state"].take())
     }
 
-    /// Waits until nothing is under way.
+    /// Waits until no work is pending.
     pub fn rest(&mut self) -> Outcome<()> {
         let browser = &mut self.browser;
         browser.value("window.rested = false, antumbra.ask('wait').then(() => window.rested = true), 0")?;
@@ -50,7 +50,7 @@ impl Page {
         }
     }
 
-    /// What is on the screen once nothing is under way; nothing may have gone wrong.
+    /// The state once no work is pending; nothing may have gone wrong.
     pub fn settled(&mut self) -> Outcome<Value> {
         self.rest()?;
         let state = self.state()?;
@@ -61,7 +61,7 @@ impl Page {
         }
     }
 
-    /// What is on the screen as soon as it is as wanted.
+    /// The state as soon as it meets a condition.
     pub fn waited_for(&mut self, what: &str, wanted: impl Fn(&Value) -> bool) -> Outcome<Value> {
         let start = Instant::now();
         loop {
@@ -76,7 +76,7 @@ impl Page {
         }
     }
 
-    /// Keeps a picture of what is seen, and gives it.
+    /// Saves and returns a screenshot.
     pub fn shot(&mut self, name: &str) -> Outcome<Vec<u8>> {
         let file = self.shots.join(format!("{name}.png"));
         let png = self.browser.screenshot()?;

@@ -1,5 +1,6 @@
-//! A small renderer with a device, vertex layout, 16-bit indices, instances, depth prepass and normals of its own. It lends
-//! its buffers to Antumbra and shades with the visibility. The calls of Antumbra stand between the two marked lines.
+//! A small renderer with a device, vertex layout, 16-bit indices, instances, depth prepass and normals of its own. It
+//! lends its buffers to Antumbra and shades with the visibility. The calls of Antumbra stand between the two marked
+//! lines.
 //!
 //!     cargo run --example bring_your_own_renderer -- backprojection shadow.ppm
 
@@ -9,7 +10,7 @@ use glam::{Mat4, Quat, Vec2, Vec3};
 use std::{error::Error, sync::Arc};
 use wgpu::util::DeviceExt;
 
-/// Pixels a side.
+/// Pixels per side.
 pub const SIZE: u32 = 192;
 
 /// Position and normal, interleaved.

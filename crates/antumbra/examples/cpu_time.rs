@@ -1,8 +1,8 @@
 //! CPU time to record and submit a frame, by technique: `cargo run -p antumbra --example cpu_time -- [SPEC …]`.
 //!
 //! Prints the medians over 100 frames of `builtin:fence` at 768 x 512: recording, and recording with finishing the
-//! encoder and submitting. The GPU's work is waited for between frames and does not count, but a software adapter shares
-//! the CPU: absolute times need a GPU.
+//! encoder and submitting. The GPU's work is waited for between frames and does not count, but a software adapter
+//! shares the CPU: absolute times need a GPU.
 
 use antumbra::scene::SceneRenderer;
 use antumbra::techniques::TECHNIQUES;

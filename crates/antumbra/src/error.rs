@@ -43,7 +43,7 @@ pub enum Error {
         given: u32,
     },
     /// The device has no memory left.
-    #[error("the GPU is out of memory: {0}; a smaller `map` or picture needs less")]
+    #[error("the GPU is out of memory: {0}; a smaller `map` or image needs less")]
     OutOfMemory(String),
     /// A bug of ours.
     #[error("GPU validation failed, which is a bug in antumbra: {0}")]
@@ -67,7 +67,7 @@ pub enum Error {
     /// A bug of ours.
     #[error(transparent)]
     Shader(#[from] ShaderError),
-    /// A picture or map that the device cannot hold.
+    /// An image or map that the device cannot hold.
     #[error("{what}: {width} x {height} is outside of 1 to {max}, the largest texture of this adapter")]
     Size {
         /// Picture, shadow map, ...

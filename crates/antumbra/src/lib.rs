@@ -1,8 +1,8 @@
 //! Soft and anti-aliased shadows of area lights, as `wgpu` passes.
 //!
-//! A host hands over its device, its casters, the depth and normals of its image and a rectangular light; a technique from
-//! the [list](techniques::TECHNIQUES) fills a texture with the visible fraction of the light at each pixel: 1 lit, 0 umbra.
-//! Nothing here opens files or windows.
+//! A host hands over its device, its casters, the depth and normals of its image and a rectangular light; a technique
+//! from the [list](techniques::TECHNIQUES) fills a texture with the visible fraction of the light at each pixel: 1 lit,
+//! 0 umbra. Nothing here opens files or windows.
 //!
 //! ```no_run
 //! use antumbra::input::casters::MeshBuffers;
@@ -33,8 +33,8 @@
 //! # Ok(()) }
 //! ```
 //!
-//! `examples/bring_your_own_renderer.rs` is a whole host of that kind, and a test compares its image with the ray-traced
-//! truth. Programs without a renderer draw a whole [`antumbra_scene::Scene`] with [`scene::SceneRenderer`].
+//! `examples/bring_your_own_renderer.rs` is a whole host of that kind, and a test compares its image with the
+//! ray-traced truth. Programs without a renderer draw a whole [`antumbra_scene::Scene`] with [`scene::SceneRenderer`].
 //!
 //! # Where to look
 //!

@@ -150,7 +150,7 @@ impl Iterator for Arrangement<'_> {
 
 /// A scene's triangles on the GPU whose instances can be moved afterwards.
 pub struct Placed {
-    /// What techniques are given.
+    /// The shadow casters.
     pub casters: Casters,
     /// What each instance is; decided once, where it stood at first.
     pub roles: Vec<Role>,

@@ -1,4 +1,4 @@
-//! A technique with its resources: what a renderer keeps for a light.
+//! A technique with its resources: the state that a renderer keeps for a light.
 
 use crate::error::Error;
 use crate::gpu::debug_view::DebugView;

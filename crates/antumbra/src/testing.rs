@@ -107,8 +107,8 @@ impl Random {
     }
 }
 
-/// Runs `fn evaluate(at: u32, to: u32)` of a WESL text for every input of `stride` numbers: it reads `input[at]` and on,
-/// writes `output[to]` and on.
+/// Runs `fn evaluate(at: u32, to: u32)` of a WESL text for every input of `stride` numbers: it reads `input[at]` and
+/// on, writes `output[to]` and on.
 pub fn evaluate(text: &str, input: &[f32], stride: usize, outputs: usize) -> Vec<Vec<f32>> {
     evaluate_variant(text, &[], input, stride, outputs)
 }

@@ -344,7 +344,7 @@ fn maps_are_kept_while_size_and_number_are_the_same() {
     if 16 * u64::from(largest).pow(2) > binding {
         match texture(largest, 4) {
             Err(Error::Size { what: "depth layers", max, .. }) => assert!(max >= 1024 && max < largest, "{max}"),
-            other => panic!("4 maps of {largest} texels a side: {other:?}"),
+            other => panic!("4 maps of {largest} texels per side: {other:?}"),
         }
     }
 }

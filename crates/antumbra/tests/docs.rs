@@ -1,4 +1,5 @@
-//! A page for each technique, with a table of settings that is made from the code. `cargo xtask docs` writes the tables.
+//! A page for each technique, with a table of settings that is made from the code. `cargo xtask docs` writes the
+//! tables.
 
 use antumbra::TechniqueInfo;
 use antumbra::technique::settings::Kind;

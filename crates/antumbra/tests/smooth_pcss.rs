@@ -22,7 +22,8 @@ fn rmse(a: &[f32], b: &[f32]) -> f64 {
     (sum / a.len() as f64).sqrt()
 }
 
-/// A large grid of bars parallel to the floor, over a camera that sees the floor up to the horizon [Shen 2011, figure 11].
+/// A large grid of bars parallel to the floor, over a camera that sees the floor up to the horizon [Shen 2011, figure
+/// 11].
 fn grid() -> Scene {
     let bars = (-50..=50).map(|i| 4.0 * i as f32);
     let mut grid = Mesh::default();

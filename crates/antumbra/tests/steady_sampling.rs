@@ -11,8 +11,8 @@ use std::sync::Arc;
 const SIZE: [u32; 2] = [48, 36];
 const FRAMES: usize = 120;
 
-/// A panel with a slit rises and sinks over the ground while it drifts: its penumbrae widen and narrow, so that maps must
-/// come and go. Only the ground is seen.
+/// A panel with a slit rises and sinks over the ground while it drifts: its penumbrae widen and narrow, so that maps
+/// must come and go. Only the ground is seen.
 fn scene_of(frame: usize) -> Scene {
     let turn = std::f32::consts::TAU * frame as f32 / FRAMES as f32;
     let (x, y) = (0.25 * turn.sin(), 1.0 - 0.55 * turn.cos());

@@ -81,8 +81,8 @@ fn square(light_edge: f32) -> Scene {
     SQUARE.scene(camera([1.2, 1.1, 2.3], [0.0, 0.0, 0.35], 45.0), light([0.0, 3.0, 0.0], [0.0; 3], light_edge))
 }
 
-/// Errors of `spec` under a light of `edge` where the truth has one of 80 cm: over the penumbra, and along the picture's
-/// row that has most of it.
+/// Errors of `spec` under a light of `edge` where the truth has one of 80 cm: over the penumbra, and along the
+/// picture's row that has most of it.
 fn square_errors(spec: &str, edge: f32) -> [Errors; 2] {
     let size = [128, 128];
     let exact = SQUARE.picture(&square(0.8), size);

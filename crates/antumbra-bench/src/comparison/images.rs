@@ -34,7 +34,7 @@ pub fn encode(comparison: &Comparison) -> Result<Vec<Images>, ReportError> {
         let fits = |i: &RgbImage| (i.width, i.height, i.data.len()) == (*width, *height, pixels * 3);
         let wrong = |image| ReportError::Size { image, spec: spec.into(), width: *width, height: *height };
         match () {
-            () if !fits(image) => return Err(wrong("picture")),
+            () if !fits(image) => return Err(wrong("image")),
             () if !heat_map.is_none_or(fits) => return Err(wrong("heat map")),
             () if visibility.len() != pixels => return Err(wrong("visibility")),
             () => (),

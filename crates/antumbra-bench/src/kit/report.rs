@@ -26,7 +26,7 @@ pub struct Report {
 pub struct Section {
     /// Heading.
     pub title: String,
-    /// What it shows and how that was measured.
+    /// Content and method of measurement.
     pub text: String,
     /// Images, tables and plots.
     pub contents: Vec<Content>,

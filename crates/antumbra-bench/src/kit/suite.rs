@@ -1,4 +1,4 @@
-//! What the list knows of a suite.
+//! List entry of a suite.
 
 use super::report::Report;
 use super::runner::Runner;

@@ -111,7 +111,7 @@ pub fn plot(points: &[Point], groups: &[&str]) -> Markup {
     let dots: Vec<_> = points.iter().map(|p| (x.position(p.ms), y.position(p.error))).collect();
     let best: Vec<bool> = points.iter().map(|p| is_best(p, points)).collect();
     let shown: Vec<bool> = points.iter().zip(&best).map(|(point, best)| point.labelled || *best).collect();
-    // Hidden labels take no room.
+    // Hidden labels take no space.
     let labels: Vec<_> =
         points.iter().zip(&shown).map(|(p, shown)| if *shown { p.label.as_str() } else { "" }).collect();
     let areas = place_labels(&dots, &labels);

@@ -14,7 +14,7 @@ pub struct Disk {
 /// An image of a quarter of the shadow, from its centre outwards, with edges of every direction.
 #[derive(Clone, Debug)]
 pub struct Shadow {
-    /// Pixels a side.
+    /// Pixels per side.
     pub side: u32,
     /// Visible fraction, row by row.
     pub visibility: Vec<f32>,
@@ -31,7 +31,7 @@ impl Disk {
         0.6 * self.penumbra + 16.3
     }
 
-    /// Pixels a side of the image.
+    /// Pixels per side of the image.
     pub fn side(&self) -> u32 {
         (self.radius() + 0.5 * self.penumbra + 6.0).ceil() as u32
     }
@@ -41,7 +41,7 @@ impl Disk {
         self.shadow(finest(self.penumbra) * self.penumbra, [0.37, 0.61])
     }
 
-    /// The shadow by a map of which the box covers `rho` texels a side. The map's grid is moved by `shift` texels.
+    /// The shadow by a map of which the box covers `rho` texels per side. The map's grid is moved by `shift` texels.
     ///
     /// Texels are squares that the box cuts, each occluded as its centre is [Shen 2011, eq. 2]. An interpolated
     /// summed-area table integrates this piecewise constant function exactly.

@@ -28,8 +28,8 @@ pub struct Found {
     pub moving: f64,
 }
 
-/// Errors of maps of which the box covers `rho` texels: the mean over offsets of the grid, and for a moving occluder that
-/// plus the mean change between frames.
+/// Errors of maps of which the box covers `rho` texels: the mean over offsets of the grid, and for a moving occluder
+/// that plus the mean change between frames.
 fn errors(disk: &Disk, reference: &Shadow, rho: f64) -> [f64; 2] {
     let shadows = SHIFTS.map(|shift| disk.shadow(rho, shift));
     let mean = |values: &mut dyn Iterator<Item = f64>, count: usize| values.sum::<f64>() / count as f64;

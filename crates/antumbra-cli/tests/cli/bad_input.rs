@@ -80,7 +80,7 @@ fn sizes_that_cannot_be_are_refused() {
     let render = "render builtin:fence -t hard -o out.png --size";
     place.refuses(&format!("{render} 0x64"), 2, &["at least one pixel"]);
     place.refuses(&format!("{render} 64"), 2, &["1280x720"]);
-    place.refuses(&format!("{render} 1000000x64"), 2, &["picture", "1000000 x 64"]);
+    place.refuses(&format!("{render} 1000000x64"), 2, &["image", "1000000 x 64"]);
     place.refuses("reference builtin:fence --visibility v.npy --size 64x1000000", 2, &["64 x 1000000"]);
     place.refuses("reference builtin:fence --visibility v.npy --light-samples 0", 2, &["light-samples"]);
     place.refuses("render builtin:fence -t hard -o out.png --frames 0", 2, &["frames"]);

@@ -25,16 +25,16 @@ mod windmill;
 use crate::{Scene, SceneError};
 use spec::{Values, parse};
 
-/// What is known about a built-in scene without building it.
+/// Description of a built-in scene.
 #[derive(Clone, Copy, Debug, serde::Serialize)]
 pub struct BuiltinInfo {
     /// Name in a SPEC.
     pub name: &'static str,
     /// A few words for a list.
     pub title: &'static str,
-    /// What it shows and what it is good for.
+    /// Content and use.
     pub description: &'static str,
-    /// What can be set.
+    /// Parameters of this scene.
     pub parameters: &'static [Parameter],
     /// Triangles over all instances with every parameter at its default.
     pub triangles: usize,
@@ -55,7 +55,7 @@ pub struct Parameter {
     pub max: f64,
     /// True if only whole numbers make sense.
     pub integer: bool,
-    /// What it does, with its unit.
+    /// Meaning, with its unit.
     pub help: &'static str,
 }
 
@@ -74,7 +74,7 @@ pub fn list() -> &'static [BuiltinInfo] {
     &BUILTINS
 }
 
-/// Builds the scene that a SPEC names, what follows `builtin:` in a scene argument.
+/// Builds the scene of a SPEC, the part after `builtin:` in a scene argument.
 pub fn build(spec: &str) -> Result<Scene, SceneError> {
     let fail = |message| SceneError::Builtin { spec: spec.to_string(), message };
     let (info, values) = parse(spec).map_err(fail)?;

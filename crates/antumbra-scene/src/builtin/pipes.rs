@@ -230,7 +230,7 @@ fn fill(stage: &mut Stage, paints: [usize; 5], lattice: &Lattice, budget: usize,
     let mut spent = start;
     let mut failures = 0;
     while spent < budget && failures < 400_000 {
-        // Wide pipes first: later there is no room for them.
+        // Wide pipes first: later they do not fit.
         let share = (spent - start) as f32 / budget.saturating_sub(start).max(1) as f32;
         let radius = mix(0.34, 0.05, share.min(1.0).sqrt()) * random.between(0.7, 1.15);
         let legs = 3 + random.below(6);

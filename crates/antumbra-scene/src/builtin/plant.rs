@@ -59,7 +59,7 @@ fn build(values: &Values) -> Scene {
     )
 }
 
-/// A pot with a rim, hollow down to the earth.
+/// A pot with a lip, hollow down to the earth.
 fn pot(m: &mut MeshBuilder) {
     let profile = [
         (0.0, 0.0),

@@ -1,4 +1,4 @@
-//! Reads `name:key=value,key=value` and says what is wrong with it.
+//! Reads `name:key=value,key=value` and reports errors.
 
 use super::{BuiltinInfo, Parameter, list};
 
@@ -32,7 +32,7 @@ impl Values {
     }
 }
 
-/// The scene that a SPEC names and the values of its parameters, or what is wrong.
+/// The scene of a SPEC and the values of its parameters, or the error.
 pub(super) fn parse(spec: &str) -> Result<(&'static BuiltinInfo, Values), String> {
     let (name, settings) = spec.split_once(':').unwrap_or((spec, ""));
     let name = name.trim();

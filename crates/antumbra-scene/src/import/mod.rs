@@ -4,19 +4,19 @@
 pub mod gltf;
 #[cfg(feature = "obj")]
 pub mod obj;
-#[cfg(any(feature = "gltf", feature = "obj"))]
-mod picture;
 #[cfg(feature = "ply")]
 pub mod ply;
 #[cfg(any(feature = "obj", feature = "ply"))]
 mod polygon;
+#[cfg(any(feature = "gltf", feature = "obj"))]
+mod texture_file;
 
 use crate::{Aabb, Camera, Instance, Material, Mesh, RectLight, SceneError};
 
 /// Gives the bytes of a file that the imported file refers to, by the name it uses.
 pub use crate::ReadFile;
 
-/// Coordinates beyond this, in metres, leave single precision no room for the squares and products of rendering.
+/// Coordinates beyond this, in metres, leave single precision no range for the squares and products of rendering.
 const FARTHEST: f32 = 1e9;
 
 /// What an importer finds in a file: at least one triangle, maybe a camera, maybe a light.
@@ -27,7 +27,7 @@ pub struct Model {
     pub name: String,
     /// Triangle meshes in object space.
     pub meshes: Vec<Mesh>,
-    /// What the meshes are made of.
+    /// Materials of the meshes.
     pub materials: Vec<Material>,
     /// Where the meshes stand.
     pub instances: Vec<Instance>,

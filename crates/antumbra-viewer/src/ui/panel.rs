@@ -105,7 +105,8 @@ pub fn pick(ui: &mut egui::Ui, choice: &mut Choice, gpu: &Gpu) {
 }
 
 fn truth(ui: &mut egui::Ui, session: &Session) {
-    ui.label("Ray-traced truth").on_hover_text("What `antumbra reference` traces: 1024 shadow rays a pixel in the end");
+    ui.label("Ray-traced truth")
+        .on_hover_text("What `antumbra reference` traces: 1024 shadow rays per pixel in the end");
     let Some(truth) = &session.truth else {
         ui.weak("traced once camera, light and occluders rest");
         return;

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 const WEDGE: &str = "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 2 3 4\n";
 
-/// Drops a file of the disk on the picture, as the desktop does.
+/// Drops a file on the image, as the desktop does.
 fn drop_file(page: &mut Page, file: &Path) -> Outcome<()> {
     let data = json!({ "items": [], "files": [file], "dragOperationsMask": 1 });
     for kind in ["dragEnter", "dragOver", "drop"] {
@@ -72,7 +72,7 @@ pub fn chosen(page: &mut Page) -> Outcome<String> {
     Ok(format!("a dialog of mode {} came, and chosen.obj is open", asked["mode"]))
 }
 
-/// What the browser downloads when the page is asked for something to take away.
+/// The download of a save command.
 fn downloaded(page: &mut Page, folder: &Path, name: &str, command: serde_json::Value) -> Outcome<Vec<u8>> {
     let allowed = json!({ "behavior": "allow", "downloadPath": folder });
     page.browser.call_whole("Browser.setDownloadBehavior", allowed)?;

@@ -1,4 +1,4 @@
-//! What may happen to a page while it is open.
+//! External events of an open page.
 
 use super::QUERY;
 use crate::Outcome;
@@ -19,7 +19,7 @@ pub fn after_a_loss(page: &mut Page) -> Outcome<String> {
     let seen =
         format!("{} of {} before, {} of {} after it", before["drawn"], before["scene"], after["drawn"], after["scene"]);
     let is_same = ["drawn", "scene", "image", "light", "camera"].iter().all(|key| before[key] == after[key]);
-    // Chromium warns on the console of work that was under way.
+    // Chromium warns on the console of pending work.
     if is_same && after["frames"].as_u64() > Some(0) { Ok(seen) } else { Err(seen) }
 }
 
@@ -35,8 +35,8 @@ pub fn resized_to_nothing(page: &mut Page) -> Outcome<String> {
     }
     page.browser.value(&format!("{style}.width = {style}.height = '', 0"))?;
     let size = before["image"].clone();
-    page.waited_for("a picture of its first size", |s| s["image"] == size)?;
-    // What changes now is drawn again.
+    page.waited_for("an image of its first size", |s| s["image"] == size)?;
+    // Changes are drawn again.
     page.ask(&json!({ "show": "visibility" }))?;
     std::thread::sleep(Duration::from_millis(300));
     let after = page.settled()?;
@@ -47,20 +47,20 @@ pub fn resized_to_nothing(page: &mut Page) -> Outcome<String> {
     if after["image"] == size && frames[1] > frames[0] { Ok(seen) } else { Err(seen) }
 }
 
-/// A screen with two pixels for one, and back. How many pixels the canvas has then is told by the screen, which an
-/// emulated one does not do: it has as many as before.
+/// A screen with two pixels for one, and back. The screen reports the canvas's size in pixels, which an emulated one
+/// does not: it has as many as before.
 pub fn another_scale(page: &mut Page) -> Outcome<String> {
     page.open(QUERY)?;
     let before = page.settled()?;
     let sides = page.browser.value("[innerWidth, innerHeight]")?;
     let metrics = json!({ "width": sides[0], "height": sides[1], "deviceScaleFactor": 2, "mobile": false });
     page.browser.call("Emulation.setDeviceMetricsOverride", metrics)?;
-    let seen = page.waited_for("a picture of another size", |s| s["image"] != before["picture"]);
+    let seen = page.waited_for("an image of another size", |s| s["image"] != before["image"]);
     page.shot("scale-2")?;
     page.browser.call("Emulation.clearDeviceMetricsOverride", json!({}))?;
     let seen = seen?;
-    page.waited_for("a picture of its first size", |s| s["image"] == before["picture"])?;
+    page.waited_for("an image of its first size", |s| s["image"] == before["image"])?;
     page.settled()?;
     page.no_errors()?;
-    Ok(format!("{} pixels, {} at scale 2, and back", before["image"], seen["picture"]))
+    Ok(format!("{} pixels, {} at scale 2, and back", before["image"], seen["image"]))
 }

@@ -5,12 +5,12 @@ use crate::Outcome;
 use crate::page::Page;
 use serde_json::json;
 
-/// What a page sees of the adapter, and asks of the device, is no more than the standard's least.
+/// Limits of adapter and device are the standard's minimum.
 const LEAST: &str = "for (const [name, least] of [['maxStorageBuffersPerShaderStage', 8],
     ['maxComputeWorkgroupStorageSize', 16384]])
     Object.defineProperty(GPUSupportedLimits.prototype, name, { get: () => least });";
 
-/// Techniques that need more are told before anybody chooses them; others are not, and are drawn.
+/// Techniques that need more are listed before they are chosen; others are not, and are drawn.
 pub fn refused(page: &mut Page) -> Outcome<String> {
     let script = page.browser.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": LEAST }))?;
     let state = page.open(QUERY).and_then(|()| page.settled());
@@ -38,7 +38,7 @@ pub fn refused(page: &mut Page) -> Outcome<String> {
     if drawn == "pcss:map=256" { Ok(seen) } else { Err(format!("{drawn} is drawn")) }
 }
 
-/// A picture of the list with the pointer on the first that is refused.
+/// A screenshot of the list with the pointer on the first refused technique.
 fn menu(page: &mut Page) -> Outcome<()> {
     let mouse = |page: &mut Page, kind: &str, at: [f64; 2]| {
         let button = if kind == "mouseMoved" { "none" } else { "left" };

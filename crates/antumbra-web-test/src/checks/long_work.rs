@@ -10,7 +10,7 @@ use std::time::Instant;
 const OBSERVE: &str = "window.tasks = []; new PerformanceObserver(list =>
     tasks.push(...list.getEntries().map(e => Math.round(e.duration)))).observe({ type: 'longtask' }), 0";
 
-/// The longest that one task may hold the page's thread, milliseconds: several times what the longest takes that is not cut,
+/// The longest that one task may hold the page's thread, milliseconds: several times the longest job without slices,
 /// which is making the scene.
 const MOST: f64 = 5000.0;
 
@@ -33,7 +33,7 @@ pub fn pipes(page: &mut Page) -> Outcome<String> {
     Ok(seen.join("; "))
 }
 
-/// What a command takes of the page's thread until all is done.
+/// Time that a command blocks the page's thread.
 fn held(page: &mut Page, name: &str, command: &Value) -> Outcome<String> {
     let start = Instant::now();
     page.browser.value("tasks.length = 0")?;

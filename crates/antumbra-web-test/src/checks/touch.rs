@@ -1,4 +1,4 @@
-//! Fingers on the picture.
+//! Touch on the image.
 
 use super::{QUERY, camera, difference, length};
 use crate::Outcome;

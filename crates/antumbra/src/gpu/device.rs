@@ -9,7 +9,7 @@ use super::texture::Texture;
 use crate::error::Error;
 use std::sync::Arc;
 
-/// A `wgpu` device with what Antumbra needs to know of it. Cheap to clone.
+/// A `wgpu` device with its capabilities and pipelines. Cheap to clone.
 #[derive(Clone)]
 pub struct Gpu {
     /// The device; the host's own, or one from [`Gpu::new`].
@@ -18,12 +18,12 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     /// Name, kind and driver.
     pub info: wgpu::AdapterInfo,
-    /// What the device can do beyond core WebGPU.
+    /// Capabilities beyond core WebGPU.
     pub capabilities: Capabilities,
     pipelines: Arc<PipelineCache>,
 }
 
-/// What an adapter offers beyond core WebGPU, and so which fallbacks are in use.
+/// Capabilities of an adapter beyond core WebGPU; the missing ones have fallbacks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct Capabilities {
     /// GPU times per pass. Without it passes have no milliseconds.
@@ -113,8 +113,8 @@ impl AdapterChoice {
         Ok(list.swap_remove(index))
     }
 
-    /// The one that is chosen among the adapters of a host's own instance, for hosts that have a window: `suits` tells
-    /// whether one can draw to it.
+    /// The one that is chosen among the adapters of a host's own instance, for hosts that have a window: `suits`
+    /// accepts adapters that can draw to it.
     pub fn of(&self, list: &[wgpu::Adapter], suits: impl Fn(&wgpu::Adapter) -> bool) -> Result<wgpu::Adapter, Error> {
         let mut list: Vec<_> = list.iter().filter(|a| is_usable(a) && suits(a)).cloned().collect();
         list.sort_by_key(|a| rank(&a.get_info()));
@@ -122,7 +122,7 @@ impl AdapterChoice {
     }
 }
 
-/// What to ask an adapter for, for hosts that open the device themselves.
+/// The device descriptor for hosts that open the device themselves.
 pub fn device_descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
     wgpu::DeviceDescriptor {
         label: Some("antumbra"),
@@ -214,7 +214,7 @@ impl Gpu {
         self.pipelines.render(&self.device, key, target)
     }
 
-    /// The most that any shader has asked for so far of what devices give a limited number of.
+    /// The largest limited resources that any shader has needed so far.
     pub fn needs(&self) -> Needs {
         self.pipelines.needs()
     }
@@ -237,7 +237,8 @@ impl Gpu {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
         let result = work();
-        // Both are popped before either is waited for: where all work shares a thread, another call may push its own then.
+        // Both are popped before either is waited for: where all work shares a thread, another call may push its own
+        // then.
         let (invalid, exhausted) = (validation.pop(), memory.pop());
         if let Some(e) = exhausted.await {
             return Err(Error::OutOfMemory(e.to_string()));
@@ -248,7 +249,7 @@ impl Gpu {
         result
     }
 
-    /// Refuses a picture or map side that the device cannot hold.
+    /// Refuses an image or map size beyond the device's limit.
     pub fn check_size(&self, what: &'static str, width: u32, height: u32) -> Result<(), Error> {
         let max = self.capabilities.max_texture_size;
         if width == 0 || height == 0 || width > max || height > max {

@@ -28,8 +28,8 @@ wgsl_types! {
     [glam::Vec4; 6] => "array<vec4<f32>, 6>",
 }
 
-/// Declares a struct once for the host and for the shaders, which import it from `package::host`. The build script finds
-/// every declaration that starts a line, so nothing is registered by hand; names are unique over the crate.
+/// Declares a struct once for the host and for the shaders, which import it from `package::host`. The build script
+/// finds every declaration that starts a line, so nothing is registered by hand; names are unique over the crate.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! gpu_struct {

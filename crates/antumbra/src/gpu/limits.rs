@@ -1,8 +1,8 @@
-//! What a shader takes of the resources that devices limit.
+//! Limited resources of shaders.
 
 use crate::error::Error;
 
-/// What one shader takes of what devices give a limited number of.
+/// Resources of one shader that devices limit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Needs {
     /// Storage buffers.
@@ -16,7 +16,7 @@ pub struct Needs {
 }
 
 impl Needs {
-    /// What every WebGPU device gives.
+    /// The limits of every WebGPU device.
     pub const CORE: Needs =
         Needs { storage_buffers: 8, storage_textures: 4, sampled_textures: 16, workgroup_bytes: 16384 };
 
@@ -30,7 +30,7 @@ impl Needs {
         }
     }
 
-    /// Refuses what a device gives too little of. `shader` is who needs it.
+    /// Refuses a device with lower limits. `shader` is who needs it.
     pub(crate) fn check(&self, shader: &'static str, limits: &wgpu::Limits) -> Result<(), Error> {
         let pairs = [
             ("storage buffers", self.storage_buffers, limits.max_storage_buffers_per_shader_stage),

@@ -11,7 +11,7 @@ use std::sync::{Arc, Mutex};
 pub struct ComputePipeline {
     /// The pipeline.
     pub pipeline: wgpu::ComputePipeline,
-    /// Threads a workgroup.
+    /// Threads per workgroup.
     pub workgroup: [u32; 3],
     pub(crate) layout: Layout,
 }
@@ -23,7 +23,7 @@ pub struct RenderPipeline {
     pub(crate) layout: Layout,
 }
 
-/// What a render pipeline writes.
+/// Targets of a render pipeline.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct RenderTarget {
     /// Formats of the colour targets.
@@ -32,7 +32,7 @@ pub struct RenderTarget {
     pub depth: Option<wgpu::CompareFunction>,
     /// Layers that are drawn at once; 1 is an ordinary pass.
     pub layers: u32,
-    /// Whether colours are added to what is there.
+    /// Whether colours are added to the target's.
     pub adds: bool,
     /// Depths a texel: 1, or 4 by multisampling.
     pub samples: u32,
@@ -56,8 +56,8 @@ impl RenderTarget {
 type ComputeKey = (ShaderKey, &'static str);
 type RenderKey = (ShaderKey, RenderTarget);
 
-/// All pipelines of a device. They are compiled outside of the locks, so that a thread that compiles does not hold up one
-/// that draws; of two threads that compile the same, the first one's pipeline stays.
+/// All pipelines of a device. They are compiled outside of the locks, so that a thread that compiles does not hold up
+/// one that draws; of two threads that compile the same, the first one's pipeline stays.
 #[derive(Default)]
 pub(crate) struct PipelineCache {
     compute: Mutex<HashMap<ComputeKey, Arc<ComputePipeline>>>,
@@ -71,7 +71,8 @@ impl PipelineCache {
         *self.most.lock().expect("only numbers are moved under the lock")
     }
 
-    /// Refuses a shader that needs more than the device gives, by name: what the driver says is for us, not for users.
+    /// Refuses a shader that needs more than the device gives, by name: the driver's messages are for developers, not
+    /// for users.
     fn check(&self, device: &wgpu::Device, key: &ShaderKey, program: &Program, entry: &str) -> Result<(), Error> {
         let needs = program.needs(entry);
         let mut most = self.most.lock().expect("only numbers are moved under the lock");

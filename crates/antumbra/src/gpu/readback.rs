@@ -21,7 +21,7 @@ pub async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>,
     read_first_layers(gpu, texture, 1).await
 }
 
-/// Reads the first mip level of all layers, one after the other; rows tightly packed.
+/// Reads the first mip level of all layers, in order; rows tightly packed.
 pub async fn read_layers(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, Error> {
     read_first_layers(gpu, texture, texture.depth_or_array_layers()).await
 }
@@ -68,7 +68,8 @@ async fn map(gpu: &Gpu, staging: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
         let _ = send.send(result);
     });
     gpu.wait()?;
-    // Where threads share the device, another one may be the one that runs the callback, a moment after this one's wait.
+    // Where threads share the device, another one may be the one that runs the callback, a moment after this one's
+    // wait.
     let mapped = match receive.try_recv() {
         Err(TryRecvError::Empty) if !cfg!(target_arch = "wasm32") => receive.recv_timeout(CALLBACK_TIME).ok(),
         result => result.ok(),

@@ -20,8 +20,8 @@ pub struct Recorder<'a> {
     open: Option<OpenPass>,
 }
 
-/// A compute pass that takes further dispatches: wgpu begins a command buffer for every pass, so fewer are cheaper. With
-/// a timer, each label has a pass of its own.
+/// A compute pass that takes further dispatches: wgpu begins a command buffer for every pass, so fewer are cheaper.
+/// With a timer, each label has a pass of its own.
 struct OpenPass {
     label: &'static str,
     pass: wgpu::ComputePass<'static>,
@@ -132,8 +132,8 @@ impl<'a> Recorder<'a> {
         self.encoder().clear_buffer(buffer, 0, bytes);
     }
 
-    /// A dispatch: its label, its pipeline, the resources by their names in the shader, its size. Dispatches that follow
-    /// each other share a pass; each sees the results of those before.
+    /// A dispatch: its label, its pipeline, the resources by their names in the shader, its size. Dispatches that
+    /// follow each other share a pass; each sees the results of those before.
     pub fn compute(
         &mut self,
         label: &'static str,

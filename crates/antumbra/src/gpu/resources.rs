@@ -1,5 +1,5 @@
-//! The pool of resources of a technique: what it asks for while it records is kept from frame to frame if it fits, made
-//! anew if it does not, counted, and offered as a debug view under the label that it was asked for with.
+//! The pool of resources of a technique: requests during recording are answered with the resource of the last frame if
+//! it fits, with a new one otherwise. Resources are counted, and offered as debug views under their labels.
 
 use super::bindings::{BindGroups, Binding, Layout};
 use super::debug_view::{DebugContent, DebugLayout, DebugView};
@@ -29,8 +29,8 @@ pub struct BufferDescription {
 }
 
 impl BufferDescription {
-    /// A storage buffer of at least `size` bytes, zero when it is made. It can hold indirect arguments and uniforms, and be
-    /// copied.
+    /// A storage buffer of at least `size` bytes, zero when it is made. It can hold indirect arguments and uniforms,
+    /// and be copied.
     pub fn new(size: u64) -> Self {
         BufferDescription { size: size.max(16), cleared: 0, debug: None }
     }
@@ -232,7 +232,7 @@ impl Resources {
         index
     }
 
-    /// Counts what was made since the last pass for this one.
+    /// Attributes resources made since the last pass to this one.
     pub(super) fn assign_pass(&mut self, pass: &'static str) {
         self.last_pass = Some(pass);
         for index in self.unassigned.drain(..) {

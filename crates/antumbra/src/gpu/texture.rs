@@ -5,7 +5,7 @@ use std::ops::Deref;
 use std::sync::{Arc, Mutex};
 use wgpu::{TextureFormat, TextureUsages, TextureViewDimension};
 
-/// Size, format and use of a texture, and what a viewer says of it.
+/// Size, format, usage and help text of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TextureDescription {
     /// Texels along x and y.

@@ -1,4 +1,4 @@
-//! What is drawn into shadow maps: triangles in the host's buffers or in our own, in clusters that are culled on the GPU.
+//! Casters of shadow maps: triangles in the host's buffers or in our own, in clusters that are culled on the GPU.
 
 use super::cluster_bounds;
 use crate::error::Error;
@@ -10,7 +10,7 @@ use crate::gpu_struct;
 use antumbra_scene::Aabb;
 use std::sync::OnceLock;
 
-/// Triangles a cluster: the unit of culling.
+/// Triangles per cluster: the unit of culling.
 pub const CLUSTER_TRIANGLES: u32 = 128;
 
 gpu_struct! {
@@ -49,13 +49,14 @@ pub struct Transforms<'a> {
     pub count: u32,
 }
 
-/// What a mesh does in the play of shadows.
+/// Role of a mesh in occluder/receiver classification.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Role {
-    /// Casts shadows and takes them. An occluder where a technique parts the scene into occluders and receivers (`ssm`).
+    /// Casts shadows and takes them. An occluder where a technique parts the scene into occluders and receivers
+    /// (`ssm`).
     #[default]
     Caster,
-    /// The same, but a receiver where the scene is parted: the ground, and what is above no other surface.
+    /// The same, but a receiver where the scene is parted: the ground, and meshes above no other surface.
     Ground,
     /// Takes shadows and casts none, whatever the technique.
     Receiver,
@@ -120,11 +121,11 @@ pub(crate) struct Batch {
     pub masked: bool,
     pub textured: bool,
     pub cluster_count: u32,
-    /// The triangles of each mesh: what may share edges.
+    /// The triangles of each mesh: the unit that may share edges.
     pub meshes: Vec<std::ops::Range<u32>>,
 }
 
-/// A cluster of one instance: what is culled and drawn. Matches `Cluster` in `triangles.wesl`.
+/// A cluster of one instance: the unit of culling and drawing. Matches `Cluster` in `triangles.wesl`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cluster {
     pub first_triangle: u32,
@@ -240,7 +241,7 @@ impl Casters {
         self.bounds
     }
 
-    /// World-space box around what is an occluder where the scene is parted ([`Role::Caster`]); empty if nothing is.
+    /// World-space bounding box of classified occluders ([`Role::Caster`]); empty if nothing is.
     pub fn occluder_bounds(&self) -> Aabb {
         self.occluder_bounds
     }

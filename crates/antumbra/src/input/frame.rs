@@ -135,7 +135,7 @@ pub struct Frame {
     /// Geometry.
     pub casters: Arc<Casters>,
     /// True if no caster has moved since the last frame: techniques may then keep maps that they have drawn. False, the
-    /// default, is always safe. The light and the camera may move all the same.
+    /// default, is always safe. The light and the camera may still move.
     pub static_casters: bool,
     /// Pixels along x and y.
     pub size: [u32; 2],

@@ -1,6 +1,7 @@
-//! The frustum of a shadow map from the light's centre, as narrow as what can cast on what is seen.
+//! The frustum of a shadow map from the light's centre, fitted to the casters of visible shadows.
 //!
-//! All is measured in the map's own coordinates, tangents xy / z and inverse distance 1 / z, in which planes are affine.
+//! All is measured in the map's own coordinates, tangents xy / z and inverse distance 1 / z, in which planes are
+//! affine.
 
 use super::light_grid::{LightGrid, Stages, clipped, plane_of};
 use crate::input::frame::View;
@@ -16,18 +17,19 @@ pub struct ShadowFrustum {
     /// Casters nearer to the light's plane than this are not seen, metres.
     pub near: f32,
     /// Distance from the light's plane of the nearest and of the farthest surface that takes shadows, metres. Maps from
-    /// other points of the light are made as much wider as these are apart; a receiver outside of its map counts as lit.
+    /// other points of the light are made as much wider as these are apart; a receiver outside of its map counts as
+    /// lit.
     pub receivers: [f32; 2],
-    /// Distance from the light's plane of the nearest surface that casts, metres; surfaces that are nearer count as there
-    /// for techniques that store depth as a part of a range.
+    /// Distance from the light's plane of the nearest surface that casts, metres; surfaces that are nearer count as
+    /// there for techniques that store depth as a part of a range.
     pub nearest_caster: f32,
 }
 
 /// Half the widest frustum that is fitted, as a tangent: 160 degrees.
 const MAX_TAN: f32 = 5.67;
 
-/// How much longer than wide a texel may be: techniques read square windows of texels, so that what the longer side lacks
-/// is lost on the shorter one too.
+/// How much longer than wide a texel may be: techniques read square windows of texels, so resolution lost on the longer
+/// side is lost on both.
 const MAX_ELONGATION: f32 = 4.0;
 
 /// Casters and receivers nearer to the light than this part of the farthest distance do not widen a frustum.
@@ -64,8 +66,8 @@ impl ShadowFrustum {
     }
 
     /// The frustum that holds all casters of shadows on surfaces that a view sees, and these shadows. Surfaces with
-    /// nothing behind them (the ground, as a rule) cast on nothing, so they do not widen it. Reads every triangle: a few
-    /// hundred milliseconds for millions of them, once for a scene whose light and view do not change.
+    /// nothing behind them (the ground, as a rule) cast on nothing, so they do not widen it. Reads every triangle: a
+    /// few hundred milliseconds for millions of them, once for a scene whose light and view do not change.
     pub fn fit(scene: &Scene, view: &View) -> ShadowFrustum {
         let mut fit = FrustumFit::new(scene, view);
         fit.by_ref().for_each(drop);
@@ -192,7 +194,7 @@ impl Seen {
     }
 }
 
-/// The surface that is farthest from the light, for each cell of the map: what is nearer casts on it.
+/// The surface that is farthest from the light, for each cell of the map: nearer surfaces cast on it.
 struct DeepestSurface {
     cells: LightGrid,
     /// Inverse distance as an affine function of the tangent: (x, y, constant); infinite where there is nothing.
@@ -246,8 +248,8 @@ impl DeepestSurface {
         reach
     }
 
-    /// Inverse distance of the deepest surface at a tangent, the smallest of the cells around it: what hangs over an
-    /// edge casts on what lies beside it.
+    /// Inverse distance of the deepest surface at a tangent, the smallest of the cells around it: a surface beyond the
+    /// edge of a cell casts on its neighbours.
     fn deepest_q(&self, t: Vec2) -> f32 {
         let of_cell = |cell: usize| self.planes[cell].dot(t.extend(1.0));
         self.cells.around(t, 1).map(of_cell).filter(|q| *q > 0.0).fold(f32::INFINITY, f32::min)

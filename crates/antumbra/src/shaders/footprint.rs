@@ -35,7 +35,7 @@ fn a_footprint_is_the_derivative_on_the_receivers_own_plane() {
         let view = &renderer.frame.view;
         let world_from_clip = (view.clip_from_view.as_dmat4() * view.view_from_world.as_dmat4()).inverse();
         let light_from_clip = light_from_world(&scene.light) * world_from_clip;
-        // Where the ray through a place of the picture meets a plane, as a tangent.
+        // Tangent of the intersection of a plane and the ray through an image position.
         let tangent = |at: DVec2, normal: DVec3, height: f64| {
             let place = at / DVec2::new(f64::from(SIZE[0]), f64::from(SIZE[1]));
             let on_ray = |depth: f64| {

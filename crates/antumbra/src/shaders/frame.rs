@@ -9,8 +9,8 @@ use glam::{DVec2, DVec3, DVec4, Vec2};
 
 const SIZE: [u32; 2] = [64, 48];
 
-/// Writes what `receiver_at` says of every pixel: depth and normal of the geometry buffer, then the receiver, then at
-/// three tangents how far points of inverse distance 0 and 2 q lie above its plane, and the bias of texels without width.
+/// Writes the receiver of every pixel: depth and normal of the geometry buffer, then the receiver, then at three
+/// tangents how far points of inverse distance 0 and 2 q lie above its plane, and the bias of texels without width.
 const KERNEL: &str = "
     import package::shaders::frame::{frame, geometry_depth, geometry_normal, receiver_at, above_plane, plane_bias};
     var<storage, read> tangents: array<vec2<f32>>;
@@ -141,7 +141,7 @@ fn height_above_the_plane_is_the_distance_along_the_normal_times_the_inverse_dis
             for (k, offset) in TANGENTS.iter().enumerate() {
                 let exact = q * twin.above(twin.tangent() + offset.as_dvec2(), q);
                 let got = f64::from(words[14 + 3 * k]);
-                // The place is off by what it says, in the tangent and in the inverse distance.
+                // Tangent and inverse distance are off by the stated error.
                 let allowed = f64::from(words[11]) * q + 2e-7 * (1.0 + twin.position.length() * q);
                 worst.see((got - exact).abs() / allowed, || format!("{pixel:?} at {offset}: {got} instead of {exact}"));
             }
@@ -151,7 +151,7 @@ fn height_above_the_plane_is_the_distance_along_the_normal_times_the_inverse_dis
     }
 }
 
-/// How far what lies exactly on a receiver's plane comes out above it, as a part of the bias, at the worst.
+/// Largest computed height of points exactly on a receiver's plane, relative to the bias.
 fn worst_of_bias(scene: &Scene, turn: impl Fn(DVec3) -> DVec3) -> Worst {
     let mut worst = Worst::default();
     for_each_receiver(scene, |pixel, twin, words| {
@@ -161,7 +161,7 @@ fn worst_of_bias(scene: &Scene, turn: impl Fn(DVec3) -> DVec3) -> Worst {
             if q <= 0.0 {
                 continue;
             }
-            // What the map stores is rounded to single precision; heights are affine in it.
+            // Stored depths are rounded to single precision; heights are affine in it.
             let [at_0, at_2q, bias] = [0, 1, 2].map(|i| f64::from(words[13 + 3 * k + i]));
             let above = at_0 + (at_2q - at_0) * f64::from(q as f32) / (2.0 * f64::from(words[9]));
             worst.see(above / bias, || format!("{pixel:?} at {offset}: {above} above its own plane, bias {bias}"));

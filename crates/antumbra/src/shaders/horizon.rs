@@ -18,10 +18,10 @@ fn light_above_horizon(normal: DVec3, position: DVec3, half: DVec2) -> f64 {
     (1.0 - below / (8.0 * a * b)).clamp(0.0, 1.0)
 }
 
-/// What the formula may be wrong by, because the narrower of the two directions counts as a hundredth of the other.
+/// Error bound of the formula: the narrower of the two directions counts as a hundredth of the other.
 const CLAMPED: f64 = 1.0 / 800.0;
 
-/// The same by another road: the rectangle cut by the plane, and the area of what is left [Sutherland, Hodgman 1974].
+/// The same by another road: the rectangle cut by the plane, and the area of the rest [Sutherland, Hodgman 1974].
 fn clipped_area(normal: DVec3, position: DVec3, half: DVec2) -> f64 {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec2::new(x, y) * half);
     let side = |p: DVec2| normal.dot(p.extend(0.0) - position);
@@ -40,8 +40,8 @@ fn clipped_area(normal: DVec3, position: DVec3, half: DVec2) -> f64 {
     doubled.abs() / (8.0 * half.x * half.y)
 }
 
-/// Receivers near the light's plane and far from it, lights from a millimetre to ten metres, planes of all slopes; every
-/// fourth passes through the light, every eighth stands square to one of its edges.
+/// Receivers near the light's plane and far from it, lights from a millimetre to ten metres, planes of all slopes;
+/// every fourth passes through the light, every eighth stands square to one of its edges.
 fn inputs(count: usize) -> Vec<(Vec3, Vec3, Vec2)> {
     let mut random = Random(7);
     (0..count)

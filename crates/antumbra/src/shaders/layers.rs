@@ -1,4 +1,4 @@
-//! `shaders/layers.wesl`: four nodes told as two layers.
+//! `shaders/layers.wesl`: two layers of four nodes.
 
 use crate::testing::{Random, Worst, evaluate};
 use proptest::prelude::*;

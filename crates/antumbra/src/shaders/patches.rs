@@ -1,4 +1,4 @@
-//! `shaders/patches.wesl`: what lies below a node of a pyramid as one plane or as two surfaces.
+//! `shaders/patches.wesl`: the texels below a node of a pyramid as one plane or as two surfaces.
 
 mod promises;
 
@@ -81,7 +81,7 @@ fn merge(children: &[Patch; 4]) -> (Patch, f64) {
     merge_with(children, 1.0)
 }
 
-/// With the range of a flat patch taken for this many times what it is: often a tilted one has the same.
+/// With the range of a flat patch multiplied by this: often a tilted one has the same.
 fn merge_with(children: &[Patch; 4], flat_counts: f64) -> (Patch, f64) {
     let Some((low, high)) = range(children) else { return (Patch::NONE, 0.0) };
     let one = if children.iter().all(|c| c.share == 1.0) {
@@ -98,7 +98,7 @@ fn merge_with(children: &[Patch; 4], flat_counts: f64) -> (Patch, f64) {
     (parted(children, middle, flat_counts), middle)
 }
 
-/// Parted into what is no farther than `middle` and what is.
+/// Split into surfaces no farther than `middle` and farther ones.
 fn parted(children: &[Patch; 4], middle: f64, flat_counts: f64) -> Patch {
     let (near, far): (Vec<Surface>, Vec<Surface>) = surfaces(children).into_iter().partition(|s| s.2.near >= middle);
     let area = |of: &[Surface]| of.iter().map(|s| s.1).sum::<f64>();
@@ -244,7 +244,7 @@ fn a_packed_patch_bounds_what_it_was() {
     assert!(worst[0] < 3e-4 && worst[1] < 3e-3 && worst[2] < 1e-3, "{worst:?}");
 }
 
-/// What is there stays there, nothing stays nothing, and no hole opens where there was none.
+/// Coverage is kept: an empty node stays empty, and no hole opens.
 #[test]
 fn shares_are_packed_to_the_next_step() {
     for got in on_gpu(&inputs(4096)) {

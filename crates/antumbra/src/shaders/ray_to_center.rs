@@ -51,7 +51,7 @@ fn exact(c: &Case) -> Option<bool> {
     for i in 0..3 {
         let (a, b) = (v[i], v[(i + 1) % 3]);
         let aside = (b - a).cross(hit - a).dot(normal) / (area * (b - a).length());
-        // The ray is met at an angle: what rounding moves it along the plane.
+        // The ray is met at an angle: its displacement along the plane by rounding.
         if aside.abs() < 3e-5 * reach * area * p.length() / along.abs() {
             return None;
         }

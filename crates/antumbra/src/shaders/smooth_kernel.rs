@@ -70,7 +70,7 @@ fn a_convolution_has_the_covariance_of_both_windows() {
     assert!(worst.error < 2e-5, "{worst:?}");
 }
 
-/// Sums what a window shares with all nodes, as the filter's loop does.
+/// Sums the overlap of a window with all nodes, as the filter's loop does.
 const SUM: &str = "
     import package::shaders::smooth_kernel::{Kernel, Panel, kernel_area, panel, coverage};
     fn evaluate(at: u32, to: u32) {

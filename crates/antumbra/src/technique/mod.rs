@@ -1,4 +1,4 @@
-//! What a technique is.
+//! The traits of a technique.
 
 pub mod settings;
 
@@ -38,13 +38,13 @@ pub struct TechniqueInfo {
     pub title: &'static str,
     /// Where it comes from: authors, year, section.
     pub source: &'static str,
-    /// One sentence: what it does and what it is good for.
+    /// One sentence: method and use.
     pub summary: &'static str,
     /// Its settings.
     pub settings: &'static [Setting],
     /// Its defaults where these settings are given: a preset among them changes others.
     pub defaults: fn(&Map<String, Value>) -> Value,
-    /// The most that a shader of it takes of what devices give a limited number of.
+    /// Limited resources of its most demanding shader.
     pub needs: Needs,
     /// Makes one from all its settings.
     pub make: MakeTechnique,

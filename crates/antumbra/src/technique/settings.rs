@@ -10,9 +10,9 @@ use serde_json::{Map, Value};
 pub struct Setting {
     /// Key in a SPEC.
     pub key: &'static str,
-    /// What it does, with its unit.
+    /// Meaning, with its unit.
     pub help: &'static str,
-    /// What values it takes.
+    /// Type and range.
     #[serde(flatten)]
     pub kind: Kind,
 }

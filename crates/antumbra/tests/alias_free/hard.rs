@@ -19,8 +19,9 @@ fn small(name: &str) -> String {
     }
 }
 
-/// Pixels where the two differ although the rays would say the same everywhere within a 64th of a pixel. Where they would
-/// not, an edge passes: rasterisers move corners to a grid of 1/256 pixel, so which side is seen is for them to say.
+/// Pixels where the two differ although the rays would say the same everywhere within a 64th of a pixel. Where they
+/// would not, an edge passes: rasterisers move corners to a grid of 1/256 pixel, so which side is seen is for them to
+/// say.
 fn unexplained(scene: &Scene, found: &[f32], truth: &Reference) -> (usize, usize) {
     let tracer = Tracer::new(scene);
     let differs = |i: &usize| truth.valid[*i] && found[*i] != truth.visibility[*i];

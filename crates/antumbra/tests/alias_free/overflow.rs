@@ -10,8 +10,8 @@ use pollster::block_on;
 const SIZE: [u32; 2] = [96, 96];
 
 /// Slivers from rim to rim, one over another: each touches a row of texels across the whole map, and all lie before the
-/// ground, so that none can be left out. The camera looks at the ground from below them: whether it sees one that is thinner
-/// than a pixel is for the rasteriser to say.
+/// ground, so that none can be left out. The camera looks at the ground from below them: whether it sees one that is
+/// thinner than a pixel is for the rasteriser to say.
 fn slivers(count: u32) -> Scene {
     let mut mesh = Mesh::default();
     for i in 0..count {

@@ -69,8 +69,8 @@ fn triangles_through_the_light_and_the_ground_hide_what_they_should() {
     assert!(found < 0.006, "{found:.4}");
 }
 
-/// Small boards, scattered from the ground to the light: all of them stand between each pixel and some point of the light,
-/// and none hides much.
+/// Small boards, scattered from the ground to the light: all of them stand between each pixel and some point of the
+/// light, and none hides much.
 fn scattered(count: u32, half: [f32; 2]) -> Mesh {
     let place = |i: u32, step: f64| ((f64::from(i) + 0.5) * step).fract() as f32;
     let mut mesh = Mesh::default();
@@ -92,8 +92,8 @@ fn few_pixels(boards: Mesh) -> Scene {
     scene(vec![ground(3.0), boards], view, light([0.0, 3.0, 0.0], [0.0; 3], 0.5))
 }
 
-/// llvmpipe ends the loops of a thread after 65 535 rounds in all, and leaves undone what comes after them. The bound is
-/// that of 256 points of which each is hidden or not by itself.
+/// llvmpipe ends the loops of a thread after 65 535 rounds in all, and leaves undone what comes after them. The bound
+/// is that of 256 points of which each is hidden or not by itself.
 #[test]
 fn a_tile_may_meet_more_triangles_than_a_thread_goes_round() {
     let scene = few_pixels(scattered(16_000, [0.00002, 0.6]));

@@ -20,8 +20,8 @@ fn tilted(degrees: f32) -> Scene {
     Scene { name, ..scene(vec![ground(20.0), square], camera(eye, target, 60.0), light) }
 }
 
-/// The share of an umbra's pixels that are lit at all, its brightest, its mean, and its number of pixels. A pixel beside
-/// its edge does not count.
+/// The share of an umbra's pixels that are lit at all, its brightest, its mean, and its number of pixels. A pixel
+/// beside its edge does not count.
 #[derive(Debug)]
 #[expect(dead_code, reason = "the mean is for people")]
 struct Umbra {

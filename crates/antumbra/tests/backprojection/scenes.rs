@@ -49,8 +49,8 @@ fn packet_differences(settings: &str) -> Vec<(String, f32, f32)> {
     ["fence:slats=9", "spheres:segments=16", "plant:leaves=8"].iter().map(each).collect()
 }
 
-/// A packet opens some nodes that a pixel leaves, which tells of some points of the light in some pixels. Where little of
-/// the light is above the horizon a point counts for more than its share of all.
+/// A packet opens some nodes that a pixel leaves, which tells of some points of the light in some pixels. Where little
+/// of the light is above the horizon a point counts for more than its share of all.
 const FEW_POINTS: f32 = 0.04;
 
 #[test]

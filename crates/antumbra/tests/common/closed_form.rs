@@ -1,6 +1,6 @@
-//! Visibility in closed form: a rectangle over the plane y = 0, parallel to a rectangular light that faces it. Seen from
-//! a point of the plane, the occluder's projection to the light's plane is a rectangle, and what is hidden of the light
-//! is the overlap of two rectangles.
+//! Visibility in closed form: a rectangle over the plane y = 0, parallel to a rectangular light that faces it. Seen
+//! from a point of the plane, the occluder's projection to the light's plane is a rectangle, and what is hidden of the
+//! light is the overlap of two rectangles.
 
 use antumbra_scene::{Camera, RectLight, Scene};
 use glam::{DVec2, DVec3};

@@ -55,8 +55,8 @@ pub fn submit(record: impl FnOnce(&mut wgpu::CommandEncoder) -> Result<(), Error
     }))
 }
 
-/// The visibility of a drawn scene by a technique. The texture is overwritten before, so that a pixel that nobody writes
-/// is seen.
+/// The visibility of a drawn scene by a technique. The texture is overwritten before, so that a pixel that nobody
+/// writes is seen.
 pub fn shadowed(renderer: &SceneRenderer, shadows: &mut Shadows) -> Result<Vec<f32>, Error> {
     let [width, height] = renderer.frame.size;
     renderer.write_visibility(gpu(), &vec![-7.0; (width * height) as usize]);

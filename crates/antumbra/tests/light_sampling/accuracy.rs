@@ -122,8 +122,8 @@ fn a_point_takes_one_map() {
     }
 }
 
-/// The largest error under two plates of different heights. Seen from the light's centre the edge of one lies behind the
-/// edge of the other; from its rim there is a gap, and up to a third of the light shines through it.
+/// The largest error under two plates of different heights. Seen from the light's centre the edge of one lies behind
+/// the edge of the other; from its rim there is a gap, and up to a third of the light shines through it.
 fn error_behind_a_gap(spec: &str) -> f64 {
     static GAP: OnceLock<(Scene, Reference)> = OnceLock::new();
     let (scene, truth) = GAP.get_or_init(|| {

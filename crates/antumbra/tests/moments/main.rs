@@ -1,5 +1,5 @@
-//! Prefiltered shadows against the truth of a hard shadow that is filtered over the pixel, and soft ones against that of an
-//! area light.
+//! Prefiltered shadows against the truth of a hard shadow that is filtered over the pixel, and soft ones against that
+//! of an area light.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -39,8 +39,8 @@ fn mean(of: &[f32], at: &[usize]) -> f64 {
     at.iter().map(|i| f64::from(of[*i])).sum::<f64>() / at.len().max(1) as f64
 }
 
-/// Pixels of which the middle and all corners see the plane y = 0: the others show several surfaces, of which techniques
-/// see the one at the middle.
+/// Pixels of which the middle and all corners see the plane y = 0: the others show several surfaces, of which
+/// techniques see the one at the middle.
 fn on_the_plain(scene: &Scene, size: [u32; 2]) -> Vec<usize> {
     let tracer = antumbra_reference::Tracer::new(scene);
     let sees_plain = |x: f64, y: f64| {

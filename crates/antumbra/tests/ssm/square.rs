@@ -24,7 +24,7 @@ fn square(over: &Over, light_size: [f32; 2]) -> Scene {
 }
 
 /// Along an edge of no length a shadow ends from one point to the next, and between two texels of the map. What lies
-/// nearer than one texel to such an end, of a map with `map` texels a side, is not judged.
+/// nearer than one texel to such an end, of a map with `map` texels per side, is not judged.
 fn error(over: &Over, light_size: [f32; 2], map: u32, rest: &str) -> Off {
     let scene = square(over, light_size);
     let exact = over.picture(&scene, SIZE);

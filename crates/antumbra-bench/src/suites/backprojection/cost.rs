@@ -8,7 +8,7 @@ use crate::page::text;
 
 /// Techniques of the curves.
 pub const DRAWN: [(&str, &str); 2] = [("balanced", BALANCED), ("pcss", PCSS)];
-/// Maps of the curve over the size of the map, texels a side.
+/// Maps of the curve over the size of the map, texels per side.
 pub const MAPS: [u32; 4] = [256, 512, 1024, 2048];
 
 /// Trials of the four curves.
@@ -43,7 +43,7 @@ pub fn section(costs: &Costs) -> Section {
         text,
         vec![
             plot(LIGHT_AXIS, by_light(costs.lights, of_ms, spoken), &[]),
-            plot("texels a side of the map", curves(maps), &[("x²", 2.0)]),
+            plot("texels per side of the map", curves(maps), &[("x²", 2.0)]),
             plot("pixels", curves(|spec| over(costs.images, spec, Trial::pixel_count)), &[("x", 1.0)]),
             plot("triangles", curves(|spec| over(costs.triangles, spec, triangles)), &[]),
         ],

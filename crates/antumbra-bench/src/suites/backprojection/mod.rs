@@ -1,5 +1,5 @@
-//! Layered back-projection: error against milliseconds beside its competitors, the effect of its settings, and the causes
-//! of its cost. The presets follow from this.
+//! Layered back-projection: error against milliseconds beside its competitors, the effect of its settings, and the
+//! causes of its cost. The presets follow from this.
 
 mod cost;
 mod error;

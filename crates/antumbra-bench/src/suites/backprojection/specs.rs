@@ -61,7 +61,7 @@ pub fn swept(key: &str, value: &str) -> String {
     format!("{BALANCED},{key}={value}")
 }
 
-/// Fixed sampling with so many maps.
+/// Fixed sampling with this many maps.
 pub fn fixed(samples: u32) -> String {
     format!("uniform-sampling:samples={samples}")
 }

@@ -8,13 +8,13 @@ use crate::table::{Table, column};
 use antumbra_scene::{Camera, Material, Mesh, RectLight, Scene};
 use glam::{Vec2, Vec3};
 
-/// Pixels a side of the image before supersampling.
+/// Pixels per side of the image before supersampling.
 const SIDE: u32 = 64;
 const MAP: u32 = 1024;
 /// The supersampled technique: the same filter without the pixel's footprint.
 const PLAIN: &str = "pcss";
 
-/// Samples a side of the reference.
+/// Samples per side of the reference.
 const REFERENCE: u32 = 32;
 
 /// A SPEC, its samples per pixel a side, and its result.
@@ -75,7 +75,7 @@ pub fn measure(runner: &Runner) -> Result<Antialiased, Error> {
     Ok(Antialiased { rows })
 }
 
-/// The visibility at `times` samples a side, averaged, and the milliseconds of the shadow.
+/// The visibility at `times` samples per side, averaged, and the milliseconds of the shadow.
 fn draw(runner: &Runner, scene: &Scene, spec: &str, times: u32) -> Result<(Vec<f32>, f64), Error> {
     let side = SIDE * times;
     let loaded = runner.load(scene, [side; 2])?;

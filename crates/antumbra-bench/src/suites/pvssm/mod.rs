@@ -1,5 +1,5 @@
-//! Predicted virtual soft shadow maps: the paper's two tables, its figures 8, 10, 11 and 13 [Shen 2011, section 6], then
-//! time over triangles and pixels.
+//! Predicted virtual soft shadow maps: the paper's two tables, its figures 8, 10, 11 and 13 [Shen 2011, section 6],
+//! then time over triangles and pixels.
 
 mod antialiasing;
 mod figures;

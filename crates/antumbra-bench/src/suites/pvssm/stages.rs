@@ -76,7 +76,7 @@ pub fn section(trials: &[Trial]) -> Section {
     let groups = trials.iter().zip(0..2).map(|(trial, place)| (trial.heading(), rows(trial, place)));
     Section::new(
         "Table 1: stage by stage",
-        "The geometry buffer is the host's. The paper draws a low-resolution map of 1024 texels a side and tiles of up \
+        "The geometry buffer is the host's. The paper draws a low-resolution map of 1024 texels per side and tiles of up \
          to 4096; this table does the same at its size.",
         vec![Table::grouped(&columns, groups).into()],
     )

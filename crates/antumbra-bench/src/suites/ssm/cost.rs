@@ -122,7 +122,7 @@ fn maps(stage: &Stage, frames: u32, found: &mut Measured) -> Result<f64, Error> 
         Point::new(texels(map), ms / 10.0 * small, note)
     });
     curves.push(Curve::new("the paper, relative to 128 x 128", 7, paper).dashed(true));
-    let what = "milliseconds, 512 over 128 texels a side";
+    let what = "milliseconds, 512 over 128 texels per side";
     found.ratios.push(ratio(stage, what, &format!("ssm:map={LARGE}"), "ssm:map=128", 15.0, growth));
     found.sections.push(Section::new(
         "Texels of the map (figure 22)",

@@ -8,9 +8,10 @@ use crate::page::lines::{Curve, Lines, Point};
 use crate::page::text;
 use crate::table::{Table, column};
 
-/// Texels a side of the paper's map.
+/// Texels per side of the paper's map.
 const PAPER_MAP: u32 = 128;
-/// Texels a side. Up to [`LARGEST_FLAT`] the map is the paper's flat one; larger ones have levels twice as fine as by default.
+/// Texels per side. Up to [`LARGEST_FLAT`] the map is the paper's flat one; larger ones have levels twice as fine as by
+/// default.
 const MAPS: [u32; 12] = [16, 32, 64, 96, 128, 160, 192, 224, 256, 384, 512, 1024];
 const LARGEST_FLAT: u32 = 256;
 const LIGHTS: [f32; 6] = [0.01, 0.02, 0.05, 0.1, 0.15, 0.2];
@@ -85,12 +86,12 @@ fn sections(all: &[(&Occluder, Sweeps)]) -> Vec<Section> {
         section(
             "Size of the map (figure 17)",
             format!(
-                "Light of 0.1. Up to {LARGEST_FLAT} texels a side one flat map as in the paper, above it levels with \
+                "Light of 0.1. Up to {LARGEST_FLAT} texels per side one flat map as in the paper, above it levels with \
                  window=16, which agree with the flat map to about 0.001 (see the levels). The paper: falls until \
                  about 200 x 200 and is flat above; spikes on the square, whose edges lie along the map's; two passes \
                  consistently below one on closed meshes, the same on the square; axis of 0 to 0.08.",
             ),
-            "texels a side of the map",
+            "texels per side of the map",
             all,
             |s| vec![("", &s.maps)],
         ),

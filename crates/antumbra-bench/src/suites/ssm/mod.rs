@@ -1,5 +1,5 @@
-//! Soft shadow maps: the paper's curves of error and cost, the gain of gathering on levels, and the paper's way over the
-//! CPU.
+//! Soft shadow maps: the paper's curves of error and cost, the gain of gathering on levels, and the paper's way over
+//! the CPU.
 
 mod cost;
 mod error;

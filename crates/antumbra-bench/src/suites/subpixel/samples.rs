@@ -11,7 +11,7 @@ use antumbra_scene::builtin;
 const SCENE: &str = "disk";
 const NAME: &str = "samples";
 const OURS: [u32; 6] = [1, 8, 16, 32, 64, 128];
-/// The paper has no 128: its supersampled picture was larger than a texture could be.
+/// The paper has no 128: its supersampled image was larger than a texture could be.
 const BRUTE: [u32; 5] = [1, 8, 16, 32, 64];
 
 fn brute(samples: u32) -> String {
@@ -47,6 +47,6 @@ pub fn section(trials: &[Trial]) -> Section {
         "Milliseconds over samples (figure 10)",
         "The paper, pterosaur: supersampling grows with the samples, to about 180 ms at 32 and 350 ms at 64; sub-pixel \
          masks stay near 15 ms at all rates.",
-        vec![Lines::new("samples a pixel", "milliseconds a frame", curves).into()],
+        vec![Lines::new("samples per pixel", "milliseconds a frame", curves).into()],
     )
 }

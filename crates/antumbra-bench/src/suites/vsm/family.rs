@@ -56,7 +56,7 @@ pub fn sections(trials: &[Trial]) -> Vec<Section> {
 /// Title of the axis of [`LIGHTS`].
 const LIGHT_AXIS: &str = "size of the light ÷ that of the scene";
 /// Title of the axis of [`MAPS`].
-const MAP_AXIS: &str = "texels a side of the map";
+const MAP_AXIS: &str = "texels per side of the map";
 
 fn point(x: f64, run: &Run, value: fn(&Run) -> f64) -> Point {
     let y = value(run);

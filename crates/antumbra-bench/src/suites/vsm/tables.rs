@@ -72,7 +72,7 @@ const SHARED_PASSES: [(&str, &str, &str); 6] = [
 
 pub fn sections(trials: &[Trial]) -> Vec<Section> {
     let [by_map, by_picture] = split(trials, [MAPS.len(), PICTURES.len()]);
-    let maps = "One image size, maps of 128 to 1024 texels a side.";
+    let maps = "One image size, maps of 128 to 1024 texels per side.";
     let pictures = "A map of 512 texels, images of 640 x 480 to 1280 x 960.";
     vec![
         section("Size of the map", by_map, &FPS_BY_MAP, maps),

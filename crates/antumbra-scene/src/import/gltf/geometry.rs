@@ -151,7 +151,7 @@ impl Used {
     }
 }
 
-/// Many primitives may share one large vertex buffer: each then keeps only what it uses, and `indices` are renumbered.
+/// Many primitives may share one large vertex buffer: each then keeps only its vertices, and `indices` are renumbered.
 fn used_vertices(indices: &mut [u32], count: usize) -> Used {
     if indices.len() >= count / 2 {
         return Used::All(count);
@@ -169,8 +169,7 @@ fn used_vertices(indices: &mut [u32], count: usize) -> Used {
 }
 
 impl UvSource {
-    /// Texture coordinates as the material wants them; what is no number becomes 0, as a texture may be wrong but a
-    /// picture must not be full of NaN.
+    /// Texture coordinates as the material wants them; NaN becomes 0: a wrong texture is better than an image of NaN.
     fn transform(&self, uv: [f32; 2]) -> Vec2 {
         let uv = self.transform.transform_point2(Vec2::from(uv));
         if uv.is_finite() { uv } else { Vec2::ZERO }

@@ -2,7 +2,7 @@
 
 use super::buffers::read_uri;
 use super::{File, label};
-use crate::import::{ReadFile, picture};
+use crate::import::{ReadFile, texture_file};
 use crate::{Material, Place, SceneError, Texture, Wrap};
 use glam::{Affine2, Mat2, Vec2, Vec4};
 use gltf_json::material::AlphaMode;
@@ -16,7 +16,7 @@ use std::sync::Arc;
 pub(super) struct Materials<'f, 'a> {
     file: &'f File<'a>,
     read_file: &'f mut ReadFile<'f>,
-    /// What becomes the model's list.
+    /// The model's list of materials.
     pub list: Vec<Material>,
     known: HashMap<Option<usize>, (usize, Option<UvSource>)>,
     textures: HashMap<usize, Arc<Texture>>,
@@ -66,7 +66,7 @@ impl<'f, 'a> Materials<'f, 'a> {
         let list = &mut self.list;
         *self.untextured.entry(material).or_insert_with(|| {
             let mut copy = Material { texture: None, ..list[material].clone() };
-            picture::drop_idle_mask(&mut copy);
+            texture_file::drop_idle_mask(&mut copy);
             list.push(copy);
             list.len() - 1
         })
@@ -89,7 +89,7 @@ impl<'f, 'a> Materials<'f, 'a> {
             return Err(self.file.malformed(place, "its baseColorFactor and alphaCutoff must be finite"));
         }
         let mut material = Material { base_color, texture, alpha_cutoff, double_sided: source.double_sided };
-        picture::drop_idle_mask(&mut material);
+        texture_file::drop_idle_mask(&mut material);
         Ok((material, pbr.base_color_texture.as_ref().map(uv_source)))
     }
 
@@ -114,7 +114,7 @@ impl<'f, 'a> Materials<'f, 'a> {
             (None, Some(view)) => std::borrow::Cow::Borrowed(file.view(view, &place)?.0),
             (None, None) => return Err(file.malformed(place, "it has neither a uri nor a bufferView")),
         };
-        let pixels = picture::decode(&bytes).map_err(|problem| file.malformed(&place, problem))?;
+        let pixels = texture_file::decode(&bytes).map_err(|problem| file.malformed(&place, problem))?;
         let sampler = match source.sampler {
             None => None,
             Some(index) => Some(file.get(&file.root.samplers, index, "samplers", &place)?),
@@ -139,7 +139,7 @@ fn wrap(mode: Checked<WrappingMode>) -> Wrap {
     }
 }
 
-/// A rotation turns the coordinates counter-clockwise as seen in the picture, whose second axis points down.
+/// A rotation turns the coordinates counter-clockwise in the image, whose second axis points down.
 fn uv_source(info: &Info) -> UvSource {
     let plain = UvSource { set: info.tex_coord, transform: Affine2::IDENTITY };
     let Some(t) = info.extensions.as_ref().and_then(|e| e.texture_transform.as_ref()) else { return plain };

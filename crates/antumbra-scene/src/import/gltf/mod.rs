@@ -23,7 +23,7 @@ use gltf_json::{Index, Root};
 const SUPPORTED: &[&str] =
     &["KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_unlit"];
 
-/// Reads a `.glb` or `.gltf` file. `name` is for messages; `read_file` gives the buffers and pictures that the file
+/// Reads a `.glb` or `.gltf` file. `name` is for messages; `read_file` reads the buffers and images that the file
 /// refers to.
 pub fn parse(bytes: &[u8], name: &str, read_file: &mut ReadFile) -> Result<Model, SceneError> {
     let (json, binary) = if bytes.starts_with(b"glTF") { chunks(bytes, name)? } else { (bytes, None) };
@@ -34,7 +34,7 @@ pub fn parse(bytes: &[u8], name: &str, read_file: &mut ReadFile) -> Result<Model
     nodes::import(&file, read_file)?.checked(name)
 }
 
-/// What every part of the importer looks things up in.
+/// The document and its buffers.
 struct File<'a> {
     name: &'a str,
     root: &'a Root,
@@ -42,7 +42,7 @@ struct File<'a> {
 }
 
 impl<'a> File<'a> {
-    /// The item that `index` refers to; `what` names its kind, `place` who refers to it.
+    /// The item that `index` refers to; `what` is its kind, `place` the referring element.
     fn get<T>(&self, list: &'a [T], index: Index<T>, what: &'static str, place: &str) -> Result<&'a T, SceneError> {
         list.get(index.value()).ok_or_else(|| SceneError::IndexOutOfRange {
             file: self.name.to_string(),

@@ -9,8 +9,7 @@ use gltf_json::extensions::scene::khr_lights_punctual::Type as LightType;
 use gltf_json::validation::Checked;
 use gltf_json::{Index, Node};
 
-/// Edge of a light as a part of its distance: glTF's lights have no size, and a shadow without penumbra is not what
-/// this program is for.
+/// Edge of a light as a fraction of its distance: glTF's lights have no size and would cast hard shadows.
 const EDGE_OF_DISTANCE: f32 = 1.0 / 20.0;
 
 /// A directional light stands this many radii of the scene from its centre.

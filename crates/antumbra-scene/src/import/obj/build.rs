@@ -4,8 +4,8 @@ use super::mtl::Library;
 use super::statements::{Corner, Statements};
 use crate::Mesh;
 use crate::import::Model;
-use crate::import::picture::drop_idle_mask;
 use crate::import::polygon::Triangulator;
+use crate::import::texture_file::drop_idle_mask;
 use glam::Vec2;
 use indexmap::IndexSet;
 

@@ -1,7 +1,7 @@
 //! Material libraries (MTL): diffuse colour, diffuse texture, and transparency as a mask.
 
 use super::statements::text_after;
-use crate::import::{ReadFile, picture};
+use crate::import::{ReadFile, texture_file};
 use crate::{Material, Texture, Wrap};
 use glam::Vec3;
 use image::{Rgba, RgbaImage};
@@ -177,7 +177,7 @@ impl Textures<'_, '_> {
         // Paths are relative to the library's folder.
         let folder = self.mtl.rfind('/').map_or("", |i| &self.mtl[..=i]);
         let full = if path.starts_with('/') { path.to_string() } else { format!("{folder}{path}") };
-        let read = (self.read_file)(&full).map_err(|e| e.to_string()).and_then(|bytes| picture::decode(&bytes));
+        let read = (self.read_file)(&full).map_err(|e| e.to_string()).and_then(|bytes| texture_file::decode(&bytes));
         let left_out = |error| tracing::warn!("{}: cannot read the texture {full}: {error}; it is left out", self.mtl);
         let texture = read.map_err(left_out).ok().map(Arc::new);
         self.known.insert(path.to_string(), texture.clone());

@@ -38,7 +38,7 @@ pub(super) struct Face {
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<Statements, SceneError> {
     let out = Statements { materials: IndexSet::from([String::new()]), ..Statements::default() };
     let mut reader = Reader { name, line: 0, out, material: 0, normals: 0, skipped: [None; 3] };
-    // A statement goes on after a backslash at the end of its line.
+    // A backslash at the end of a line continues the statement.
     let mut joined = Vec::new();
     for (number, line) in (1..).zip(bytes.split(|&b| b == b'\n')) {
         if joined.is_empty() {
@@ -85,7 +85,7 @@ impl Reader<'_> {
             b"v" => self.position(words)?,
             b"vt" => {
                 let [u, v] = [self.number(words.next())?, words.next().map_or(Ok(0.0), |w| self.number(Some(w)))?];
-                // OBJ counts v from the bottom of the picture, a texture here from its top.
+                // In OBJ v starts at the bottom of the image, here at the top.
                 let uv = Vec2::new(u, 1.0 - v);
                 self.out.uvs.push(if uv.is_finite() { uv } else { Vec2::ZERO });
             }

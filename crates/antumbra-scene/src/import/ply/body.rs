@@ -1,4 +1,4 @@
-//! The body: the properties of every item, one after the other.
+//! The body: the properties of every item, in sequence.
 
 use super::header::{Element, Encoding, Header, Kind, Property};
 use crate::{Place, SceneError};
@@ -59,7 +59,7 @@ impl<'a> Body<'a> {
         Ok(&self.values)
     }
 
-    /// Length of a list that the rest of the file has room for.
+    /// Length of a list, checked against the rest of the file.
     fn length(&mut self, length: Kind, kind: Kind) -> Result<usize, SceneError> {
         let value = self.scalar(length)?;
         if value < 0.0 || value.fract() != 0.0 {

@@ -107,7 +107,7 @@ fn corner_lists(body: &mut Body, element: &Element, mut each: impl FnMut(&[i64])
 #[derive(Default)]
 struct Surface {
     positions: Vec<Vec3>,
-    /// Corners of all polygons, one after the other.
+    /// Corners of all polygons, in sequence.
     corners: Vec<i64>,
     /// End of each polygon in `corners`.
     ends: Vec<usize>,

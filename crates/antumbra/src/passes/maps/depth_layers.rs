@@ -60,9 +60,9 @@ pub struct DepthLayers {
 const EXTRA_SURFACES: u32 = 4;
 
 impl DepthLayers {
-    /// Draws what the light's centre sees, and the surfaces behind it, into `layers` (1 or more) maps of `size` texels
-    /// per side. Surfaces join a layer if their parallax between the light's centre and its border is below `apart`
-    /// texels. With 0 each surface is a layer, and those behind the last are dropped.
+    /// Draws the surfaces nearest to the light's centre, and those behind them, into `layers` (1 or more) maps of
+    /// `size` texels per side. Surfaces join a layer if their parallax between the light's centre and its border is
+    /// below `apart` texels. With 0 each surface is a layer, and those behind the last are dropped.
     pub fn of_light(
         recorder: &mut Recorder,
         frame: &Frame,

@@ -40,8 +40,8 @@ pub(crate) struct Drawing<'a> {
     pub samples: u32,
     /// The surfaces of a texel that are kept besides that one.
     pub extra: Extra<'a>,
-    /// True if a surface is drawn to every texel that it touches, not only to those whose middle it covers; then nothing
-    /// else can be kept.
+    /// True if a surface is drawn to every texel that it touches, not only to those whose middle it covers; then
+    /// nothing else can be kept.
     pub touched: bool,
 }
 
@@ -151,7 +151,7 @@ impl<'a> Drawing<'a> {
 }
 
 impl DepthMap {
-    /// Draws what the light's centre sees of the casters, into a map of `size` texels per side.
+    /// Draws the casters from the light's centre into a map of `size` texels per side.
     pub fn of_light(recorder: &mut Recorder, frame: &Frame, size: u32) -> Result<DepthMap, Error> {
         DepthMap::record(recorder, &frame.casters, frame.map_clip_from_world(), size)
     }

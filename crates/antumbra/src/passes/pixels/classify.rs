@@ -23,16 +23,16 @@ pub struct PenumbraList {
 /// Pixels that are listed besides those in penumbra.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Listing {
-    /// A pixel of which the light's centre sees nothing may be lit from the light's border, through a gap that the centre
-    /// does not see. Techniques that see from the centre alone trust the map that it is dark; others get such pixels
-    /// listed.
+    /// A pixel of which the light's centre sees nothing may be lit from the light's border, through a gap that the
+    /// centre does not see. Techniques that see from the centre alone trust the map that it is dark; others get such
+    /// pixels listed.
     pub trust_dark: bool,
     /// For techniques that filter over the pixel's footprint on the map: occluders of the footprint count too.
     pub footprints: bool,
 }
 
 impl PenumbraList {
-    /// Empty lists with room for every pixel, for a pass of the caller's.
+    /// Empty lists with capacity for every pixel, for a pass of the caller.
     pub(crate) fn empty(recorder: &mut Recorder, size: [u32; 2]) -> PenumbraList {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         let tiles = u64::from(size[0].div_ceil(8)) * u64::from(size[1].div_ceil(8));
@@ -45,8 +45,8 @@ impl PenumbraList {
         }
     }
 
-    /// Writes the visibility of known pixels and lists the others, whose visibility is -1 until the technique writes it.
-    /// A pixel that is lit by the map is lit.
+    /// Writes the visibility of known pixels and lists the others, whose visibility is -1 until the technique writes
+    /// it. A pixel that is lit by the map is lit.
     pub fn record(
         recorder: &mut Recorder,
         frame: &Frame,

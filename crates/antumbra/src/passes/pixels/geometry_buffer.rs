@@ -87,7 +87,7 @@ impl GeometryBuffer {
         recorder.render(label, &colors, depth_target(&self.depth.view, Some(0.0)), 1, |draw| {
             for batch in casters.batches.iter().filter(|b| b.cluster_count > 0) {
                 let pipeline = if batch.textured { &textured } else { &plain };
-                draw.bind(pipeline, &[bindings! { picture_view: &view }, &batch.bindings(casters)])?;
+                draw.bind(pipeline, &[bindings! { image_view: &view }, &batch.bindings(casters)])?;
                 draw.pass.draw(0..3 * CLUSTER_TRIANGLES, 0..batch.cluster_count);
             }
             Ok(())

@@ -12,13 +12,13 @@ use crate::input::casters::Casters;
 /// Which clusters are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Surfaces {
-    /// What casts.
+    /// All casters.
     Casters,
-    /// What is an occluder where the scene is parted into occluders and receivers.
+    /// Occluders of the occluder/receiver classification.
     Occluders,
-    /// What is a receiver there.
+    /// Receivers of that classification.
     Receivers,
-    /// What only takes shadows.
+    /// Meshes that only receive.
     Background,
 }
 

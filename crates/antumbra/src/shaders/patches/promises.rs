@@ -1,10 +1,11 @@
-//! What patches promise of the texels below them, by pyramids over maps that know the texels of each surface.
+//! Guarantees of patches about the texels below them, tested by pyramids over maps that know the texels of each
+//! surface.
 
 use super::{Patch, merge};
 use glam::DVec2;
 use proptest::prelude::*;
 
-/// What a map has at a texel's middle.
+/// Content of a map at a texel's centre.
 #[derive(Clone, Copy, Debug)]
 struct Texel {
     at: DVec2,
@@ -125,7 +126,7 @@ fn direction() -> impl Strategy<Value = DVec2> {
     (0.0f64..std::f64::consts::TAU).prop_map(DVec2::from_angle)
 }
 
-/// By how much texels go beyond what patches promise.
+/// Violations of the patches' guarantees.
 #[derive(Debug, Default)]
 struct Beyond {
     /// Above their node's top.
@@ -208,8 +209,8 @@ proptest! {
     }
 }
 
-/// A quarter is a ramp from 0.25 to 1.75, one lies at 1.5, two at 1. The ramp's middle is nearer to those at 1, so it is
-/// of the farther surface, though its upper end is nearer than all else.
+/// A quarter is a ramp from 0.25 to 1.75, one lies at 1.5, two at 1. The ramp's middle is nearer to those at 1, so it
+/// is of the farther surface, though its upper end is nearer than all else.
 #[test]
 fn a_ramp_beside_a_plateau() {
     let map = Map::of(8, |at| match (at.x < 4.0, at.y < 4.0) {

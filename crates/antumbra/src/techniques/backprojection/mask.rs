@@ -100,7 +100,7 @@ fn worst_rectangle(n: u32) -> f64 {
                 run = (run - width).max(0.0) + f64::from(u8::from(*row));
                 worst = worst.max(run);
             }
-            // Lack: as wide and high as it can be without a point more; at the light's rim half a step.
+            // Lack: as wide and high as it can be without a point more; at the light's border half a step.
             let step = |inside: bool| if inside { 1.0 } else { 0.5 };
             let width = (width * f64::from(n) + step(first > 0) + step(last + 1 < rows.len())) / f64::from(n);
             let mut run = 0.0f64;
@@ -115,8 +115,8 @@ fn worst_rectangle(n: u32) -> f64 {
     worst / f64::from(n)
 }
 
-/// What the theory grants: four corners, each a box from the origin whose count is off by m/3 + 13/9 points at most
-/// [Halton, Zaremba 1969], and by one more for the shift by half a step.
+/// Bound by theory: four corners, each a box from the origin whose count is off by m/3 + 13/9 points at most [Halton,
+/// Zaremba 1969], and by one more for the shift by half a step.
 fn granted(n: u32) -> f64 {
     4.0 * (f64::from(n.trailing_zeros()) / 3.0 + 13.0 / 9.0 + 1.0) / f64::from(n)
 }
@@ -305,7 +305,7 @@ proptest! {
     #[test]
     fn the_union_of_boxes_is_their_area(n in any_count(), rects in prop::collection::vec(any_rect(), 1..=BOXES)) {
         let off = (f64::from(covered(&points(n), &rects)) / f64::from(n) - union_area(&rects)).abs();
-        // Each box adds a rectangle less what is there: two rectangles at most for each of its corners.
+        // Each box adds a rectangle minus the present ones: two rectangles at most for each of its corners.
         let bound = granted(n) / 4.0 * rects.len() as f64;
         prop_assert!(off <= bound, "off by {} points of {}, bound {}", off * f64::from(n), n, bound * f64::from(n));
     }

@@ -1,7 +1,7 @@
 //! Shadow maps that can be filtered: moments and other statistics of depth.
 //!
-//! `vsm`, `evsm`, `msm`, `esm` and `csm` are hard shadows, looked up through [`prefiltered`]; `savsm`, `vssm` and `cssm`
-//! are soft, read from summed-area tables through [`summed`].
+//! `vsm`, `evsm`, `msm`, `esm` and `csm` are hard shadows, looked up through [`prefiltered`]; `savsm`, `vssm` and
+//! `cssm` are soft, read from summed-area tables through [`summed`].
 
 pub mod csm;
 pub mod cssm;

@@ -7,7 +7,8 @@
 //! filtering, section 4, <https://doi.org/10.1111/j.1467-8659.2011.01875.x>.
 //!
 //! `smooth-pcss` filters over the convolution of the light's window, seen through the blockers, with the pixel's, seen
-//! through the receiver's plane: soft and hard transitions are filtered alike, also where many texels fall into a pixel.
+//! through the receiver's plane: soft and hard transitions are filtered alike, also where many texels fall into a
+//! pixel.
 
 use crate::error::Error;
 use crate::gpu::device::Gpu;

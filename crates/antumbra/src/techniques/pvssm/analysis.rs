@@ -1,5 +1,5 @@
-//! The input of the prediction: a conservative low-resolution map, the pixels that may lie in penumbra, and the kernel of
-//! each [Shen 2011, section 5.2, steps 2 and 3].
+//! The input of the prediction: a conservative low-resolution map, the pixels that may lie in penumbra, and the kernel
+//! of each [Shen 2011, section 5.2, steps 2 and 3].
 
 use super::PvssmSettings;
 use crate::binding_array;

@@ -1,5 +1,5 @@
-//! The kd-tree over the tile grid and the shelves of the pool on the CPU [Giegl and Wimmer 2007]: the paper's way, and the
-//! twin of `kd_tree.wesl` and `decide.wesl`.
+//! The kd-tree over the tile grid and the shelves of the pool on the CPU [Giegl and Wimmer 2007]: the paper's way, and
+//! the twin of `kd_tree.wesl` and `decide.wesl`.
 
 use super::PvssmSettings;
 use super::plan::{Decided, LARGEST_NODE, MOST_OF_ROUND, MOST_TILES, Tile};

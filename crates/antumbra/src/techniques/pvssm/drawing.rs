@@ -68,7 +68,7 @@ pub(crate) struct Drawing {
 }
 
 impl Drawing {
-    /// Lists with room for every cluster in every tile of a round.
+    /// Lists with capacity for every cluster in every tile of a round.
     pub fn prepare(recorder: &mut Recorder, frame: &Frame, settings: &PvssmSettings) -> Result<Drawing, Error> {
         let clusters = frame.casters.cluster_count;
         if clusters >= MOST_CLUSTERS {

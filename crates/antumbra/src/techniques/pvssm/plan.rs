@@ -142,7 +142,7 @@ impl Decided {
     }
 
     /// The indirect arguments of each round: the draw that clears its tiles, the pyramid over them, the culling of each
-    /// batch, which takes so many workgroups.
+    /// batch, which takes this many workgroups.
     pub fn arguments(&self, rounds: u32, batches: &[u32]) -> Vec<u32> {
         let of_round = |round: u32| {
             let drawn = self.tiles.iter().filter(|t| t.round == round && t.fresh != 0).count() as u32;

@@ -10,8 +10,8 @@ use crate::passes::lists::list_length::ListLength;
 /// Elements that a workgroup processes at once.
 const BLOCK: u32 = 1024;
 
-/// Number of workgroups for a list of at most so many elements: several for each core of the largest GPUs, none idle, and
-/// their sums fit one block.
+/// Number of workgroups for a list of at most `count` elements: several for each core of the largest GPUs, none idle,
+/// and their sums fit one block.
 pub(crate) fn runs_of(capacity: u32) -> u32 {
     capacity.div_ceil(BLOCK).clamp(1, BLOCK)
 }

@@ -1,5 +1,5 @@
-//! An irregular depth buffer [Aila, Laine 2004; Sintorn 2008]: for each texel of a map from the light's centre a list of
-//! the receivers in it. Lists are counted, scanned and written.
+//! An irregular depth buffer [Aila, Laine 2004; Sintorn 2008]: for each texel of a map from the light's centre a list
+//! of the receivers in it. Lists are counted, scanned and written.
 
 use crate::error::Error;
 use crate::gpu::bindings::Binding;

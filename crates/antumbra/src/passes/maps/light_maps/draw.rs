@@ -55,8 +55,8 @@ const MOST_BYTES: u64 = 1 << 29;
 /// Bytes of the arguments of an indirect draw.
 const DRAW_BYTES: u64 = 16;
 
-/// A stack of square `Depth32Float` maps of `near / z`, as in [`DepthMap`](crate::passes::maps::depth_map::DepthMap), and
-/// the points of the light that they are drawn from.
+/// A stack of square `Depth32Float` maps of `near / z`, as in [`DepthMap`](crate::passes::maps::depth_map::DepthMap),
+/// and the points of the light that they are drawn from.
 pub struct LightMaps {
     /// One layer per map.
     pub texture: Texture,
@@ -132,8 +132,8 @@ impl LightMaps {
         })
     }
 
-    /// The largest number of maps of `size` texels per side that one array holds on this device: as many as it has layers,
-    /// within half a gigabyte.
+    /// The largest number of maps of `size` texels per side that one array holds on this device: as many as it has
+    /// layers, within half a gigabyte.
     pub fn most(gpu: &Gpu, size: u32) -> u32 {
         let by_memory = (MOST_BYTES / (4 * u64::from(size) * u64::from(size))).min(u64::from(u32::MAX)) as u32;
         let layers = gpu.device.limits().max_texture_array_layers.min(by_memory);

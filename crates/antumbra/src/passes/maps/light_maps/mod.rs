@@ -1,7 +1,8 @@
 //! Shadow maps from many points of the light, in the layers of one texture array, and visibility through them.
 //!
-//! All maps face along the light's normal, and each window is shifted so that all of them hold the same receivers: in the
-//! coordinates tangent xy / z and inverse distance 1 / z the map of light point s is the centre's map, sheared by s.
+//! All maps face along the light's normal, and each window is shifted so that all of them hold the same receivers: in
+//! the coordinates tangent xy / z and inverse distance 1 / z the map of light point s is the centre's map, sheared by
+//! s.
 
 pub(crate) mod draw;
 pub(crate) mod evaluate;
@@ -45,7 +46,7 @@ pub(crate) fn light_samples(recorder: &mut Recorder, frame: &Frame, points: &[Ve
 }
 
 /// The map of a light point: an oblique frustum whose window at the middle of the receivers' range of inverse distances
-/// is the one of the centre's map, wider by what the window moves between the ends of that range.
+/// is the one of the centre's map, wider by the window's movement between the ends of that range.
 fn sample(frame: &Frame, place: Vec2) -> LightSample {
     let (point, f) = (place * frame.light.size, &frame.frustum);
     let [near_q, far_q] = f.receivers.map(|z| 1.0 / z);

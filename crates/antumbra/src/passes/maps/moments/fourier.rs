@@ -7,8 +7,8 @@ pub fn comparison(terms: u32, u: f64) -> f64 {
     0.5 + (0..terms).map(|k| weight(terms, k) * (span(terms) * odd(k) * u).sin()).sum::<f64>()
 }
 
-/// How far the series rises over 0 again where it should be 0, and what rounding of its terms adds to that; no more than
-/// a fifth, which a series of one or two terms exceeds.
+/// How far the series rises over 0 again where it should be 0, and the error added by rounding of its terms; no more
+/// than a fifth, which a series of one or two terms exceeds.
 pub fn ripple(terms: u32, rounding: f32) -> f32 {
     // The first minimum lies about half a period of the last term from the step.
     let below = |i: i32| comparison(terms, -f64::from(i) / 4096.0);

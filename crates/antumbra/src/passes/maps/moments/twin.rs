@@ -110,7 +110,8 @@ fn worst_of_planes(format: TexelFormat, apart: f32) -> Worst {
 
 #[test]
 fn of_two_planes_the_bound_is_the_coverage() {
-    // [Donnelly, Lauritzen 2006, section 3.1]. Closer planes are told apart as far as 32 bits hold a difference of squares.
+    // [Donnelly, Lauritzen 2006, section 3.1]. Closer planes are separated as far as 32 bits resolve a difference of
+    // squares.
     for apart in [0.01, 0.1, 0.5] {
         let worst = worst_of_planes(TexelFormat::Rg32Float, apart);
         assert!(worst.error < 1e-3, "{apart} apart: {worst:?}");
@@ -180,7 +181,7 @@ fn moments(points: &[(f64, f64)]) -> [f64; 4] {
     [1, 2, 3, 4].map(|k| points.iter().map(|(z, w)| w * z.powi(k)).sum())
 }
 
-/// What four moments say is hidden before a depth.
+/// The hidden fraction before a depth by four moments.
 const HIDDEN_PART: &str = "import package::shaders::hamburger::hidden_part;
     fn evaluate(at: u32, to: u32) {
         let m = vec4(input[at], input[at + 1u], input[at + 2u], input[at + 3u]);
@@ -250,7 +251,8 @@ fn fractions_of(m: [f64; 4]) -> [f64; 4] {
 
 #[test]
 fn sixteen_bits_of_the_basis_lose_less_than_sixteen_bits_of_the_moments() {
-    // Three readings of two surfaces: unrounded, rounded in the basis, rounded as plain moments, which lie in -1…1 and 0…1.
+    // Three readings of two surfaces: unrounded, rounded in the basis, rounded as plain moments, which lie in -1…1 and
+    // 0…1.
     let mut random = Random(13);
     let (mut input, mut cases) = (Vec::new(), Vec::new());
     while cases.len() < 20_000 {
@@ -281,8 +283,8 @@ fn sixteen_bits_of_the_basis_lose_less_than_sixteen_bits_of_the_moments() {
             output[to + 5u] = hidden_part(basis, z, 6.0e-5);
             output[to + 6u] = hidden_part(at4(at + 8u), z, 6.0e-5);
         }";
-    // Determinant of the matrix (1 m1 m2; m1 m2 m3; m2 m3 m4), which is 0 for two surfaces and below for what no surfaces
-    // have, of moments that are moved as hamburger.wesl does.
+    // Determinant of the matrix (1 m1 m2; m1 m2 m3; m2 m3 m4), which is 0 for two surfaces and below for what no
+    // surfaces have, of moments that are moved as hamburger.wesl does.
     let possible = |m: [f64; 4]| {
         let towards = [0.0, 0.375, 0.0, 0.375];
         let [m1, m2, m3, m4] = [0, 1, 2, 3].map(|k| m[k] + 6e-5 * (towards[k] - m[k]));

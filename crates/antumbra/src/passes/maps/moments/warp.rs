@@ -1,4 +1,4 @@
-//! What the numbers of a moment map mean.
+//! Meaning of the numbers in a moment map.
 
 use crate::gpu_struct;
 use crate::input::frame::Frame;
@@ -6,7 +6,7 @@ use crate::input::frustum::ShadowFrustum;
 use glam::Vec2;
 
 gpu_struct! {
-    /// How a depth becomes what is stored; see `shaders/depth_warp.wesl`.
+    /// The mapping from depth to stored values; see `shaders/depth_warp.wesl`.
     #[derive(Default)]
     pub struct DepthWarp {
         /// Distance along the light's normal where the range begins, metres.
@@ -35,24 +35,23 @@ gpu_struct! {
 /// Where the range of depths begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Nearest {
-    /// At the nearest receiver: what is nearer hides every receiver behind it however near it is, and a short range lets
-    /// less light bleed.
+    /// At the nearest receiver: nearer casters hide every receiver at any depth, and a short range bleeds less light.
     Receiver,
     /// At the nearest caster: the penumbra's width follows from the caster's distance.
     Caster,
 }
 
 impl DepthWarp {
-    /// This warp over the range of a frame. What lies behind every receiver hides nothing, so it counts as at the range's
-    /// end.
+    /// This warp over the range of a frame. Surfaces behind every receiver hide nothing, so they are clamped to the
+    /// range's end.
     pub fn over(self, frame: &Frame, nearest: Nearest) -> DepthWarp {
         let ShadowFrustum { receivers: [first, farthest], nearest_caster, .. } = frame.frustum;
         let nearest = match nearest {
             Nearest::Receiver => first,
             Nearest::Caster => nearest_caster,
         };
-        // An occluder that is clamped to the near end must stay before the nearest receiver by more than that is moved by
-        // its computed errors, and empty space behind the farthest.
+        // An occluder that is clamped to the near end must stay before the nearest receiver by more than that is moved
+        // by its computed errors, and empty space behind the farthest.
         let (nearest, farthest) = (nearest - 0.02 * farthest, farthest * 1.001);
         let nearest = nearest.max(1e-3 * farthest);
         let length = farthest - nearest;

@@ -13,8 +13,8 @@ use crate::passes::maps::light_depth::LightDepth;
 mod twin;
 
 crate::choices! {
-    /// What sums are kept in. Corners of a table are sums over up to the whole map, and a box is a small difference of
-    /// such, so what rounding leaves of it depends on this.
+    /// Number format of sums. Corners of a table are sums over up to the whole map, and a box is a small difference of
+    /// such sums, so its precision depends on the format.
     pub enum Sums {
         /// 32-bit floating point, of up to four values a layer.
         Float = "float32",
@@ -25,14 +25,14 @@ crate::choices! {
     }
 }
 
-/// What a table is made of.
+/// Shape of a table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TableShape {
     /// Texels per side.
     pub size: u32,
     /// Layers of four channels.
     pub layers: u32,
-    /// What sums are kept in.
+    /// Number format of sums.
     pub sums: Sums,
 }
 
@@ -78,7 +78,7 @@ impl SummedArea {
 
 const LABEL: &str = "summed-area table";
 
-/// Counts the set bits of a mask of `size` bits per side: rows of whole 32-bit words, one after the other. The counts are
+/// Counts the set bits of a mask of `size` bits per side: rows of whole 32-bit words, in sequence. The counts are
 /// `R32Uint`; see `shaders/mask_counts.wesl`.
 pub fn mask_counts(
     recorder: &mut Recorder,

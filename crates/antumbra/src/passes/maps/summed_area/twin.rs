@@ -62,7 +62,7 @@ impl Depths {
     }
 }
 
-/// The largest errors of means over boxes of 8 to 32, and of over 256 texels a side.
+/// The largest errors of means over boxes of 8 to 32, and of over 256 texels per side.
 fn errors(size: u32, sums: &[Sums]) -> Vec<[f64; 2]> {
     let gpu = gpu();
     let renderer = SceneRenderer::new(gpu, &builtin::build("fence").expect("known"), [64, 48]).expect("uploads");
@@ -118,7 +118,7 @@ fn means_over_boxes_of_a_map_of_4096_are_those_of_double_precision() {
     let [float, offset, fixed] = errors(4096, &[Sums::Float, Sums::Offset, Sums::Fixed])[..] else { panic!("three") };
     // Depths themselves are rounded to 2^-25 of the range.
     assert!(fixed[0] < 3e-7 && fixed[1] < 3e-7, "64-bit integers: {fixed:?}");
-    // Depths lie about 0 as they are, so the mean taken off is little; what is left of the sums is too large for 32 bits.
+    // Depths lie about 0 as they are, so the mean taken off is little; the differences are too large for 32 bits.
     assert!(float[0] > 1e-3 && offset[0] > 1e-3, "32 bits are enough: {float:?}, less the mean {offset:?}");
 }
 

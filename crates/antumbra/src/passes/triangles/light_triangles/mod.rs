@@ -31,8 +31,8 @@ const CLUSTER_BYTES: u64 = 32;
 /// Triangles in a row of texels; see `shaders/triangle_texels.wesl`.
 const TEXEL_ROW: u32 = 1024;
 
-/// Triangles that are processed together. Large scenes have several parts, to bound the memory, and each batch with holes
-/// has parts of its own, whose texture is bound.
+/// Triangles that are processed together. Large scenes have several parts, to bound the memory, and each batch with
+/// holes has parts of its own, whose texture is bound.
 pub struct Part {
     /// Batch, first cluster of the batch, number of clusters.
     clusters: Vec<(usize, u32, u32)>,

@@ -95,8 +95,8 @@ impl SilhouetteMask {
         Ok(SilhouetteMask { texels, counts, edges })
     }
 
-    /// The numbers of silhouette edges, if they were counted, and of silhouette texels. Waits for the GPU: for tests and
-    /// reports.
+    /// The numbers of silhouette edges, if they were counted, and of silhouette texels. Waits for the GPU: for tests
+    /// and reports.
     pub async fn stats(&self, gpu: &Gpu) -> Result<[u64; 2], Error> {
         let mut edges = 0;
         if let Some(buffer) = &self.edges {

@@ -1,9 +1,9 @@
 //! Pairs of a triangle and a texel: the lists of receivers whose view of the light's centre each triangle may occlude
 //! [Pan 2009, section 3.3], found by conservative rasterisation in compute.
 //!
-//! The candidates of a triangle are all blocks of 8 x 8 texels of its extent, one thread each, so a triangle that fills the
-//! map is spread over as many threads as it has blocks. Candidates that pass the test are listed block by block, then
-//! texel by texel, and sorted by the length of the texels' lists.
+//! The candidates of a triangle are all blocks of 8 x 8 texels of its extent, one thread each, so a triangle that fills
+//! the map is spread over as many threads as it has blocks. Candidates that pass the test are listed block by block,
+//! then texel by texel, and sorted by the length of the texels' lists.
 //!
 //! *No pair is lost to a small buffer.* Pairs are counted before they are listed. If they exceed the capacity, the same
 //! frame evaluates its candidates without lists: the result is the same and takes longer. The counts are read back

@@ -1,11 +1,11 @@
 //! Timo Aila, Samuli Laine, 2004: Alias-free shadow maps, <https://doi.org/10.2312/EGWR/EGSR04/161-166>.
 //!
-//! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, 2008: Sample based visibility for soft shadows using alias-free shadow maps,
-//! section 3, <https://doi.org/10.1111/j.1467-8659.2008.01267.x>.
+//! Erik Sintorn, Elmar Eisemann, Ulf Assarsson, 2008: Sample based visibility for soft shadows using alias-free shadow
+//! maps, section 3, <https://doi.org/10.1111/j.1467-8659.2008.01267.x>.
 //!
 //! The exact hard shadow at the middle of every pixel. Pixels are listed in the texels through which the light's centre
-//! sees them, and each triangle is tested against the pixels of the texels that it touches. The map only groups the work:
-//! whatever its resolution, the result is the same.
+//! sees them, and each triangle is tested against the pixels of the texels that it touches. The map only groups the
+//! work: whatever its resolution, the result is the same.
 
 use crate::error::Error;
 use crate::gpu::device::Gpu;

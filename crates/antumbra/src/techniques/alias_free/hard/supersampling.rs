@@ -6,8 +6,8 @@ use crate::input::frame::{Frame, View};
 use crate::passes::pixels::geometry_buffer::GeometryBuffer;
 use glam::{DVec2, Mat4, Vec4};
 
-/// The point of index `index`, in pixels from the pixel's middle. Point 0 is the middle; any number of points fill the pixel
-/// evenly [Roberts 2018, "R2"].
+/// The point of index `index`, in pixels from the pixel's middle. Point 0 is the middle; any number of points fill the
+/// pixel evenly [Roberts 2018, "R2"].
 fn point(index: u32) -> DVec2 {
     let plastic = 1.324_717_957_244_746;
     let step = DVec2::new(1.0 / plastic, 1.0 / (plastic * plastic));

@@ -1,12 +1,12 @@
-//! Points of the light: a lattice with the square of side 1 as a period, so that any place of it puts the same number of
-//! points into the square, as far from one another as can be [Korobov 1959]. It lies askew: no two points have the same
-//! x or the same y. Seen along its shortest vector it is rows of points at whole numbers, so what a triangle hides of a
-//! row is a run of bits.
+//! Points of the light: a lattice with the square of side 1 as a period, so that any place of it puts the same number
+//! of points into the square, as far from one another as can be [Korobov 1959]. It lies askew: no two points have the
+//! same x or the same y. Seen along its shortest vector it is rows of points at whole numbers, so a triangle hides a
+//! run of bits in each row.
 
 use glam::{DMat2, DVec2};
 
-/// Most points of a lattice: near what the mask holds, and few enough to be looked up for a whole cluster in as many rounds
-/// as llvmpipe gives a thread.
+/// Most points of a lattice: near the mask's capacity, and few enough to test a whole cluster within the loop rounds
+/// that llvmpipe allows a thread.
 pub(crate) const MOST_POINTS: u32 = 480;
 /// Most rows, and most points of a row, which are the bits of a word.
 pub(crate) const MOST_ROWS: usize = 32;
@@ -18,7 +18,8 @@ pub(crate) struct Lattice {
     pub basis: DMat2,
 }
 
-/// A lattice that is moved: point (i, j) lies at `origin + basis * (i, j)`, and is in the square if bit i of row j is set.
+/// A lattice that is moved: point (i, j) lies at `origin + basis * (i, j)`, and is in the square if bit i of row j is
+/// set.
 #[derive(Clone, Debug)]
 pub(crate) struct Placed {
     pub origin: DVec2,

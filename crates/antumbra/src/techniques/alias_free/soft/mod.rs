@@ -2,9 +2,9 @@
 //! maps, <https://doi.org/10.1111/j.1467-8659.2008.01267.x>, in spirit.
 //!
 //! Each pixel tests its own triangles against many points of the light, one bit per point. Nothing is listed: a tile of
-//! pixels loops over the clusters of triangles that may lie between it and the light, so no list can overflow. The clusters
-//! and triangles are those in the convex hull of the tile's surface points and the light, so no caster is missed, whether or
-//! not the light's centre sees it.
+//! pixels loops over the clusters of triangles that may lie between it and the light, so no list can overflow. The
+//! clusters and triangles are those in the convex hull of the tile's surface points and the light, so no caster is
+//! missed, whether or not the light's centre sees it.
 
 use crate::error::Error;
 use crate::gpu::debug_view::DebugLayout;
@@ -74,7 +74,8 @@ const PLACEMENTS: u32 = 16;
 /// Triangles that are gathered and tested before others are.
 const MOST_TRIANGLES: u32 = 1 << 15;
 
-/// The narrowest light that has points, as a fraction of the distance to the nearest surface: a penumbra far below a pixel.
+/// The narrowest light that has points, as a fraction of the distance to the nearest surface: a penumbra far below a
+/// pixel.
 const LEAST_LIGHT: f32 = 1e-4;
 
 /// Shadow of a rectangular light by points on it.

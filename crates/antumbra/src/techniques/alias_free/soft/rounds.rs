@@ -19,7 +19,7 @@ pub(super) struct Rounds {
     pub passes: u32,
 }
 
-/// Rounds of all loops of a thread, after which llvmpipe ends them: 65 535, less what is not counted.
+/// Rounds of all loops of a thread, after which llvmpipe ends them: 65 535, less the uncounted rounds.
 const LLVMPIPE_ROUNDS: u32 = 65_000;
 /// Rounds of a cluster besides those of its triangles: `ROUNDS_OF_CLUSTER`.
 const CLUSTER_ROUNDS: u32 = 32;
@@ -29,7 +29,7 @@ const SETS: u32 = MOST_ROWS as u32 / 4;
 const GROUP: u32 = 8;
 
 impl Rounds {
-    /// Of a part of the triangles, for so many points of the light. Drivers of GPUs end no loop.
+    /// For a part of the triangles and this many points of the light. Drivers of GPUs end no loop.
     pub fn of(gpu: &Gpu, part: &Part, points: u32) -> Rounds {
         if !gpu.is_software() {
             return Rounds { most: u32::MAX, passes: 1 };
@@ -37,7 +37,7 @@ impl Rounds {
         let masked = part.masked.is_some();
         let (loops, lookups) = if masked { (2, points) } else { (1, 0) };
         let triangles = CLUSTER_ROUNDS + CLUSTER_TRIANGLES * (1 + loops * SETS);
-        // What a cluster may need, and what it may be counted as: lookups are summed over threads.
+        // Rounds that a cluster may need, and its counted bound: lookups are summed over threads.
         let needed = triangles + CLUSTER_TRIANGLES * lookups;
         let counted = triangles + CLUSTER_TRIANGLES * lookups * GROUP;
         let most = LLVMPIPE_ROUNDS - needed;

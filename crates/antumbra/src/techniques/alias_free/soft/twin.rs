@@ -4,7 +4,7 @@ use crate::techniques::alias_free::soft::lattice::Lattice;
 use crate::testing::{Random, evaluate};
 use glam::{DMat2, DVec2, DVec3, Vec2, Vec3};
 
-/// Rows that are looked at.
+/// Number of tested rows.
 const ROWS: usize = 32;
 
 const KERNEL: &str = "

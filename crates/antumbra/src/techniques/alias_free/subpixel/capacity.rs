@@ -1,5 +1,5 @@
-//! The capacity of the lists of facets, learned from the counts of earlier frames up to a budget. Beyond it, the image is
-//! processed in strips.
+//! The capacity of the lists of facets, learned from the counts of earlier frames up to a budget. Beyond it, the image
+//! is processed in strips.
 
 use crate::gpu::recorder::Recorder;
 use crate::gpu_struct;
@@ -68,7 +68,8 @@ impl CapacityPlan {
         ((0..size[1]).step_by(rows as usize).map(strip).collect(), self.entries)
     }
 
-    /// Ends a frame: requests its counts (entries of its longest strip, number of strips) and takes those of an earlier one.
+    /// Ends a frame: requests its counts (entries of its longest strip, number of strips) and takes those of an earlier
+    /// one.
     pub fn learn(&mut self, recorder: &mut Recorder, counts: &wgpu::Buffer) {
         let counts = recorder.read_back::<2>("counts of entries", counts);
         let Some([needed, strips]) = counts.filter(|[needed, _]| *needed > self.entries) else { return };

@@ -1,8 +1,9 @@
 //! Michael Schwärzler, 2009: Accurate soft shadows in real-time applications, TU Wien,
 //! <https://www.cg.tuwien.ac.at/research/publications/2009/SCHWAERZLER-2009-ASS/>.
 //!
-//! Shadow maps where the light needs them: begin with the corners of the light, split the cells of a quadtree whose corners
-//! see different shadows, and weight the samples. Every decision is made on the GPU, so no frame waits for a readback.
+//! Shadow maps where the light needs them: begin with the corners of the light, split the cells of a quadtree whose
+//! corners see different shadows, and weight the samples. Every decision is made on the GPU, so no frame waits for a
+//! readback.
 
 mod rounds;
 mod settings;

@@ -73,7 +73,7 @@ impl Rounds<'_> {
     ) -> Result<(), Error> {
         self.steady(recorder, maps_valid)?;
         self.weigh(recorder, jump)?;
-        // New maps lie wherever there was room.
+        // New maps lie in any free layer.
         for chunk in self.plan.chunks(0, true) {
             self.draw_maps(recorder, chunk)?;
             self.reproject(recorder, chunk)?;

@@ -1,11 +1,11 @@
-//! What can be set.
+//! Settings of this technique.
 
 use crate::error::SpecError;
 use crate::technique::settings::Kind;
 use crate::techniques::light_sampling::uniform::{Evaluate, Weights};
 
 crate::choices! {
-    /// What makes a cell of the light worth splitting.
+    /// Criterion for splitting a cell of the light.
     pub enum Criterion {
         /// Somewhere on the screen the visibility may change by more than `tolerance`.
         Local = "local",
@@ -17,9 +17,9 @@ crate::choices! {
 }
 
 crate::choices! {
-    /// What a map tells of the light around its sample.
+    /// Information of a map about the light around its sample.
     pub enum Filter {
-        /// The part of the sample's cell of the light that is seen, by projecting back what the map holds.
+        /// The part of the sample's cell of the light that is seen, by back-projection of the map.
         Cell = "cell",
         /// Whether the sample is seen, filtered over a few texels [section 3.4.3].
         Pcf = "pcf",
@@ -29,9 +29,10 @@ crate::choices! {
 crate::choices! {
     /// Where depths are compared.
     pub enum Space {
-        /// At the pixels of the picture: what is not seen needs no maps.
+        /// At the pixels of the image: invisible surfaces need no maps.
         Camera = "camera",
-        /// At what the light's centre sees: a steady number of maps, whatever the camera does [section 4.1].
+        /// At the surfaces nearest to the light's centre: a steady number of maps, whatever the camera does [section
+        /// 4.1].
         Light = "light",
     }
 }
@@ -39,15 +40,15 @@ crate::choices! {
 crate::settings! {
     /// Settings of [`AdaptiveSampling`](super::AdaptiveSampling).
     pub struct AdaptiveSamplingSettings {
-        /// Shadow maps, texels a side.
+        /// Shadow maps, texels per side.
         map: u32 = 512, Kind::Integer { min: 16, max: 16384 };
-        /// What a map tells of the light around its sample: its cell (smooth with few maps), or the sample alone (pcf).
+        /// Information of a map about the light around its sample: its cell (smooth with few maps), or the sample alone (pcf).
         filter: Filter = Filter::Cell, Kind::Choice { options: Filter::OPTIONS };
-        /// Reads a side for a cell, for filter=cell; twice as many for steady=true, where edges move.
+        /// Reads per side for a cell, for filter=cell; twice as many for steady=true, where edges move.
         taps: u32 = 8, Kind::Integer { min: 1, max: 64 };
-        /// Width of the filter on each map in texels a side, for filter=pcf and for comparisons; 1 is a single lookup.
+        /// Width of the filter on each map in texels per side, for filter=pcf and for comparisons; 1 is a single lookup.
         pcf: u32 = 2, Kind::Integer { min: 1, max: 33 };
-        /// What is compared: visibility where it is most (local), or depth over the picture (absolute, relative).
+        /// Compared values: visibility where it differs most (local), or depth over the image (absolute, relative).
         criterion: Criterion = Criterion::Local, Kind::Choice { options: Criterion::OPTIONS };
         /// Change of the visibility of a tile of the screen that is worth a split, for criterion=local; 0 splits all.
         tolerance: f32 = 0.07, Kind::Number { min: 0.0, max: 1.0 };
@@ -57,11 +58,11 @@ crate::settings! {
         gamma: f32 = 0.02, Kind::Number { min: 0.0, max: 1.0e6 };
         /// Finest subdivision; rectangles stop at 5, which are 33 x 33 maps.
         depth: u32 = 4, Kind::Integer { min: 0, max: 7 };
-        /// Most maps a frame; the most urgent splits come first.
+        /// Most maps per frame; the most urgent splits come first.
         maps: u32 = 128, Kind::Integer { min: 4, max: 1089 };
-        /// Where depths are compared: at the camera's pixels, or at what the light's centre sees.
+        /// Where depths are compared: at the camera's pixels, or at the surfaces nearest to the light's centre.
         space: Space = Space::Camera, Kind::Choice { options: Space::OPTIONS };
-        /// What samples count: the area around them, or less the finer they were refined (eq. 5 and 6).
+        /// Weights of samples: the area around them, or less the finer they were refined (eq. 5 and 6).
         weights: Weights = Weights::Area, Kind::Choice { options: Weights::OPTIONS };
         /// All maps in one array, or few at a time: drawn twice, or once with equal weights (weights=paper, section 4.1).
         evaluation: Evaluate = Evaluate::Array, Kind::Choice { options: Evaluate::OPTIONS };
@@ -72,12 +73,13 @@ crate::settings! {
 
 impl AdaptiveSamplingSettings {
     /// True if the weights are known when maps are added up one by one: those of a steady tree are, and those of a tree
-    /// whose maps are drawn once to build it and once more to add them up. The paper draws once and weighs all the same.
+    /// whose maps are drawn once to build it and once more to add them up. The paper draws once and weights all samples
+    /// equally.
     pub(super) fn knows_weights(&self) -> bool {
         self.steady || self.weights == Weights::Area
     }
 
-    /// Refuses what makes no sense together.
+    /// Refuses contradictory settings.
     pub(super) fn check(&self) -> Result<(), SpecError> {
         if self.space == Space::Light && self.criterion == Criterion::Local {
             return Err(SpecError::Value {

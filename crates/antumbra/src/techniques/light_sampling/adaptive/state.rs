@@ -33,7 +33,7 @@ gpu_struct! {
         gamma: f32,
         /// Pixels from one point to the next.
         stride: u32,
-        /// Texels a side of the filter.
+        /// Texels per side of the filter.
         width: i32,
         by_area: u32,
         /// Metres.
@@ -56,10 +56,10 @@ gpu_struct! {
     }
 }
 
-/// The finest level of a rectangle: what is beyond costs more than it shows.
+/// The finest level of a rectangle: more cost more than they show.
 const DEEPEST_RECTANGLE: u32 = 5;
 
-/// Points that are compared on the screen, at most about: the cost of a comparison stays the same whatever the picture.
+/// Points that are compared on the screen, at most about: the cost of a comparison does not depend on the image size.
 const POINTS: f32 = 32_768.0;
 
 /// See `AdaptiveUniform::pace`: too little to be seen as a jump.
@@ -88,8 +88,8 @@ impl Shape {
         Shape { axes, depth: depth.min(deepest) }
     }
 
-    /// For a light of `size` metres, as fine as the settings can make it: by the local criterion, a cell that is smaller
-    /// than the tolerance is never split.
+    /// For a light of `size` metres, as fine as the settings can make it: by the local criterion, a cell that is
+    /// smaller than the tolerance is never split.
     pub fn of_settings(size: Vec2, settings: &AdaptiveSamplingSettings) -> Shape {
         let shape = Shape::new(size, settings.depth);
         let can_split = |level: &u32| 1.0 / shape.cells_at(*level) as f32 >= settings.tolerance;
@@ -156,7 +156,7 @@ pub(super) struct TreePlan {
     pub layers: Layers,
     uniform: AdaptiveUniform,
     stages: Vec<MapStage>,
-    /// For each level, first with all maps drawn anew, then with static maps: its stages.
+    /// For each level, first with all maps drawn, then with static maps: its stages.
     chunks: [Vec<Range<u32>>; 2],
     pub evaluation: Evaluation,
 }

@@ -1,5 +1,5 @@
-//! Random refinement by the real shaders, held against a tree that is refined in plain Rust and weighed in double
-//! precision, and against what has to hold for any tree.
+//! Random refinement by the real shaders, compared with a tree that is refined in plain Rust and weighted in double
+//! precision, and with the invariants of any tree.
 
 mod refinement;
 mod twin;
@@ -51,8 +51,7 @@ impl Trial {
         if self.is_local() { self.settings.tolerance } else { 16.0 }
     }
 
-    /// What the corners of a cell disagree by, given its place in the list of cells: the threshold to the last bit where
-    /// the disagreement is `limit`.
+    /// Disagreement of a cell's corners, by its index: the threshold to the last bit where the disagreement is `limit`.
     fn measure(&self, frame: usize, cell: usize) -> f32 {
         let mixed = (self.seed ^ (frame as u64) << 32 ^ cell as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let mixed = (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -129,7 +128,7 @@ proptest! {
         for k in 0..20 {
             frame(&|cell| trial.measure(1 + k / 8, cell));
         }
-        // Nothing disagrees any more: the light's corners are left, with what they count in the end.
+        // Nothing disagrees any more: the light's corners are left, with their final weights.
         let corners = Tree::new(Shape::new(trial.size, 0).axes, 0).samples.len();
         let last = (0..1000).map(|_| frame(&|_| 0.0)).find(|outcome| outcome.count as usize == corners);
         refinement.check_weights(&last.expect("never settles"));
@@ -152,8 +151,8 @@ fn every_layer_is_drawn_by_one_stage_whatever_the_layers_a_pass_can_draw() {
                 let drawn: Vec<usize> = state.chunks(level, rest).flat_map(|c| slots_of(&c.stage)).collect();
                 let distinct: BTreeSet<usize> = drawn.iter().copied().collect();
                 assert_eq!(drawn.len(), distinct.len(), "{what}: a layer is drawn twice");
-                // Samples of this level may lie anywhere where there was room, or behind those of the levels before: the
-                // corners of the light, and at least five or one for each level with a split.
+                // Samples of this level may lie in any free layer, or behind those of the levels before: the corners of
+                // the light, and at least five or one for each level with a split.
                 let step = if size.y > 0.0 { 5 } else { 1 };
                 let first = if rest || level == 0 { 0 } else { state.shape.samples_at(0) + step * (level - 1) };
                 let end = if rest { state.capacity } else { state.shape.samples_at(level).min(state.capacity) };

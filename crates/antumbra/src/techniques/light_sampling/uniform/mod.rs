@@ -1,7 +1,7 @@
 //! Paul Heckbert, Michael Herf, 1997: Simulating soft shadows with graphics hardware, CMU-CS-97-104.
 //!
-//! A fixed number of shadow maps over the light, also section 3.2 of [Schwärzler 2009]: the brute force that tends to the
-//! truth as the maps get more and finer.
+//! A fixed number of shadow maps over the light, also section 3.2 of [Schwärzler 2009]: the brute force that tends to
+//! the truth as the maps get more and finer.
 
 mod pattern;
 
@@ -22,8 +22,8 @@ use glam::Vec2;
 crate::choices! {
     /// How the maps are added up.
     pub enum Evaluate {
-        /// All maps lie in one texture array and are read in one pass [section 3.4.2]; in several where the device has no
-        /// room for all.
+        /// All maps lie in one texture array and are read in one pass [section 3.4.2]; in several if the device's
+        /// limits require it.
         Array = "array",
         /// Each map is drawn into the same texture and added to the sum at once, in constant memory [section 3.4.1].
         Accumulate = "accumulate",
@@ -43,7 +43,7 @@ crate::settings! {
         weights: Weights = Weights::Area, Kind::Choice { options: Weights::OPTIONS };
         /// Width of the filter on each map in texels per side; 1 is a single lookup.
         pcf: u32 = 2, Kind::Integer { min: 1, max: 33 };
-        /// All maps in one array, or one after the other through the same texture.
+        /// All maps in one array, or in sequence through the same texture.
         evaluation: Evaluate = Evaluate::Array, Kind::Choice { options: Evaluate::OPTIONS };
     }
 }
@@ -61,7 +61,7 @@ pub struct UniformSampling {
     drawn_count: usize,
 }
 
-/// The samples of a light of one size, in parts of as many maps as there is room for.
+/// The samples of a light of one size, in parts that fit the layers of the array.
 struct Plan {
     light_size: Vec2,
     /// Maps in memory at a time.

@@ -1,4 +1,4 @@
-//! Where the samples lie on the light, and what each of them counts.
+//! Positions of the samples on the light, and their weights.
 
 use crate::error::SpecError;
 use glam::{DVec2, Vec2};
@@ -6,7 +6,7 @@ use glam::{DVec2, Vec2};
 crate::choices! {
     /// How samples are spread.
     pub enum Pattern {
-        /// A grid whose outer samples lie on the light's rim.
+        /// A grid whose outer samples lie on the light's border.
         Regular = "regular",
         /// One sample at a random place in each cell of a grid.
         Stratified = "stratified",
@@ -16,9 +16,9 @@ crate::choices! {
 }
 
 crate::choices! {
-    /// What the samples of a grid or of a quadtree count.
+    /// Weights of the samples of a grid or quadtree.
     pub enum Weights {
-        /// The part of the light that lies around a sample: on the rim half of what counts inside, in corners a quarter.
+        /// The part of the light that lies around a sample: half on the border, a quarter in the corners.
         Area = "area",
         /// All the same on a grid, less the finer it was refined in a quadtree [Schwärzler 2009, eq. 5 and 6].
         Paper = "paper",
@@ -97,7 +97,7 @@ fn equal(places: impl Iterator<Item = DVec2>) -> Vec<Sample> {
     places.into_iter().map(|p| Sample { place: p.as_vec2(), weight }).collect()
 }
 
-/// Columns by rows from rim to rim, row by row.
+/// Columns by rows from border to border, row by row.
 fn grid([columns, rows]: [u32; 2], weights: Weights) -> Vec<Sample> {
     let at = |i: u32, n: u32| if n == 1 { 0.0 } else { f64::from(i) / f64::from(n - 1) - 0.5 };
     let places = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y)));
@@ -136,8 +136,8 @@ fn random(seed: u32) -> f64 {
     f64::from((word >> 22) ^ word) / f64::from(u32::MAX) * (1.0 - 1e-9)
 }
 
-/// Place `i` of `count`: the Hammersley set, whose every row and column is as even as the whole. The second coordinate's
-/// digits are scrambled with the same mask, which takes the set's corner away from the light's corner.
+/// Place `i` of `count`: the Hammersley set, whose every row and column is as even as the whole. The second
+/// coordinate's digits are scrambled with the same mask, which takes the set's corner away from the light's corner.
 fn low_discrepancy(i: u32, count: u32, extended: [bool; 2]) -> DVec2 {
     let along = (f64::from(i) + 0.5) / f64::from(count) - 0.5;
     match extended {
@@ -174,7 +174,7 @@ mod tests {
 
     #[test]
     fn the_light_s_mean_is_met_better_by_even_patterns() {
-        // The mean of x² y² over the light is 1/144; a regular grid from rim to rim needs its weights for it.
+        // The mean of x² y² over the light is 1/144; a regular grid from border to border needs its weights for it.
         let mean = |list: &[Sample]| -> f64 {
             let value = |p: DVec2| (p.x * p.y).powi(2);
             list.iter().map(|s| f64::from(s.weight) * value(s.place.as_dvec2())).sum()

@@ -27,7 +27,7 @@ crate::prefilter_settings! {
         format: EvsmFormat = EvsmFormat::Rgba32Float, Kind::Choice { options: EvsmFormat::OPTIONS };
         /// Exponent of the warp over the range of depths; formats of 16 bits take no more than 9.
         exponent: f32 = 40.0, Kind::Number { min: 1.0, max: 80.0 };
-        /// Against light bleeding: so much of the bound becomes 0 and the rest is stretched; widens shadows.
+        /// Against light bleeding: this part of the bound becomes 0 and the rest is stretched; widens shadows.
         bleeding: f32 = 0.0, Kind::Number { min: 0.0, max: 0.95 };
     }
 }

@@ -20,7 +20,7 @@ crate::prefilter_settings! {
     pub struct MsmSettings {
         /// Four 32-bit numbers per texel, or four 16-bit fractions in a basis that loses little by rounding.
         format: MsmFormat = MsmFormat::Rgba32Float, Kind::Choice { options: MsmFormat::OPTIONS };
-        /// Against light bleeding: so much of the bound becomes 0 and the rest is stretched; widens shadows.
+        /// Against light bleeding: this part of the bound becomes 0 and the rest is stretched; widens shadows.
         bleeding: f32 = 0.0, Kind::Number { min: 0.0, max: 0.95 };
     }
 }
@@ -42,7 +42,7 @@ impl Prefilter for Moments {
     const WARP: &'static str = "techniques::moments::msm::warp";
 
     fn stored(settings: &MsmSettings) -> Stored {
-        // How far the moments are moved: what the paper's section 4.3 finds for each precision.
+        // How far the moments are moved: the values of the paper's section 4.3 for each precision.
         let (format, rounding, terms) = match settings.format {
             MsmFormat::Rgba32Float => (TexelFormat::Rgba32Float, 3e-7, 0),
             MsmFormat::Rgba16Unorm => (TexelFormat::Rgba16Unorm, 6e-5, 1),

@@ -1,6 +1,6 @@
-//! Prefiltered shadow maps: the values stored of a texel's depths are blurred, given a mip chain, and looked up once per
-//! pixel with trilinear and anisotropic filtering. A technique defines the stored values and how filtered ones are read, in
-//! a module `warp.wesl` of two functions.
+//! Prefiltered shadow maps: the values stored of a texel's depths are blurred, given a mip chain, and looked up once
+//! per pixel with trilinear and anisotropic filtering. A technique defines the stored values and how filtered ones are
+//! read, in a module `warp.wesl` of two functions.
 
 use crate::error::Error;
 use crate::gpu::device::Gpu;

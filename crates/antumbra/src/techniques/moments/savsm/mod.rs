@@ -1,5 +1,5 @@
-//! Summed-area variance shadow maps [Lauritzen 2007]: percentage-closer blocker search, then the variance of depth over the
-//! box that the light makes at the blockers' distance.
+//! Summed-area variance shadow maps [Lauritzen 2007]: percentage-closer blocker search, then the variance of depth over
+//! the box that the light makes at the blockers' distance.
 
 use super::summed::{Plan, Soft, SoftUniform, Summed};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};

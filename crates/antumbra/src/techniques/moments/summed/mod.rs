@@ -1,6 +1,6 @@
-//! Soft shadows by means over boxes: a summed-area table of values stored of the depth map, and for each pixel in penumbra
-//! the boxes that the light covers in it. A technique defines the stored values in a module `warp.wesl` and reads the visible
-//! fraction from means in a module `soft.wesl`; the penumbra follows from the light's size alone.
+//! Soft shadows by means over boxes: a summed-area table of values stored of the depth map, and for each pixel in
+//! penumbra the boxes that the light covers in it. A technique defines the stored values in a module `warp.wesl` and
+//! reads the visible fraction from means in a module `soft.wesl`; the penumbra follows from the light's size alone.
 
 use crate::error::Error;
 use crate::gpu::device::Gpu;

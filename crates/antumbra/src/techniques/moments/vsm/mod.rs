@@ -1,4 +1,5 @@
-//! Variance shadow maps [Donnelly, Lauritzen 2006]: mean and mean square of the depths in per texel, which can be filtered.
+//! Variance shadow maps [Donnelly, Lauritzen 2006]: mean and mean square of the depths in per texel, which can be
+//! filtered.
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
@@ -22,7 +23,7 @@ crate::prefilter_settings! {
     pub struct VsmSettings {
         /// Two 32-bit numbers per texel, two of 16 bits, or two of 32 bits over four channels of 16.
         format: VsmFormat = VsmFormat::Rg32Float, Kind::Choice { options: VsmFormat::OPTIONS };
-        /// Against light bleeding: so much of the bound becomes 0 and the rest is stretched; widens shadows.
+        /// Against light bleeding: this part of the bound becomes 0 and the rest is stretched; widens shadows.
         bleeding: f32 = 0.0, Kind::Number { min: 0.0, max: 0.95 };
     }
 }

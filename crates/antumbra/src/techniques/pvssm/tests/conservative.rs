@@ -29,8 +29,8 @@ fn triangles(seed: u64) -> Scene {
     scene
 }
 
-/// Distance between a triangle and a square around `middle` by the separating axis theorem [Gottschalk 1996]: the largest
-/// separation along any axis; negative if they overlap.
+/// Distance between a triangle and a square around `middle` by the separating axis theorem [Gottschalk 1996]: the
+/// largest separation along any axis; negative if they overlap.
 fn separation(corners: &[DVec2; 3], middle: DVec2, half: f64) -> f64 {
     let mut widest = f64::NEG_INFINITY;
     let edges = (0..3).map(|k| (corners[(k + 1) % 3] - corners[k]).perp().normalize_or_zero());

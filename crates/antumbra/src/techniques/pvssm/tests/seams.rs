@@ -1,4 +1,4 @@
-//! Kernels that overlap several tiles: many tiles give what one map of the same resolution gives.
+//! Kernels that overlap several tiles: many tiles give the result of one map of the same resolution.
 
 use super::super::analysis::Analysis;
 use super::super::drawing::{Drawing, Pool};
@@ -62,8 +62,8 @@ fn tiles_of_one_resolution_are_one_map() {
             println!("{name}, tiles of {tile}: {mean} in the mean, at most {worst}, {over} of {penumbra} over 1e-3");
             assert!(penumbra > 200, "{name}: {penumbra} pixels in penumbra");
             assert!(mean < 3e-4, "{name}, tiles of {tile}: {mean} in the mean");
-            // Rasterisers move corners to a grid of 1/256 texel, relative to which positions in the pool differ. Where an
-            // edge passes the middle of a texel, that texel may be drawn in one map and not in the other. It is a
+            // Rasterisers move corners to a grid of 1/256 texel, relative to which positions in the pool differ. Where
+            // an edge passes the middle of a texel, that texel may be drawn in one map and not in the other. It is a
             // hundredth of the kernels that it lies in. Sheets over each other have many such edges, a receiver over
             // which nothing but one caster lies has almost none.
             assert!(worst < 0.025, "{name}, tiles of {tile}: {worst}");

@@ -17,7 +17,7 @@ use crate::{bindings, gpu_struct};
 use std::sync::Arc;
 
 crate::choices! {
-    /// What one lookup is.
+    /// Kind of a lookup.
     pub enum Lookup {
         /// The texel that the position falls into.
         Nearest = "nearest",

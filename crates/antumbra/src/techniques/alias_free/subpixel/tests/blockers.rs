@@ -2,19 +2,19 @@
 
 use super::*;
 
-/// A plane as the picture sees it.
+/// A plane in image space.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub position: DVec3,
     pub normal: DVec3,
     pub eye: DVec3,
-    /// What a pixel to the right, and one down, add to the ray at the plane's distance.
+    /// Change of the ray at the plane's distance by one pixel to the right, and by one down.
     pub across: DVec3,
     pub down: DVec3,
 }
 
 impl Seen {
-    /// What a place of the pixel sees of the plane; none past its horizon.
+    /// The point of the plane at a position in the pixel; none past its horizon.
     pub fn place(&self, s: DVec2) -> Option<DVec3> {
         let direction = self.position - self.eye + s.x * self.across + s.y * self.down;
         let t = self.normal.dot(self.position - self.eye) / self.normal.dot(direction);
@@ -44,8 +44,8 @@ pub(super) fn shadows(pattern: &Pattern, cases: &[(Seen, [DVec3; 3])]) -> Vec<[S
     masks_on_gpu(pattern, KERNEL, &input, 24)
 }
 
-/// Of a point before the light: whether the triangle hides it, and by how much less or more than an edge, as an angle seen
-/// from the light, and in metres to the triangle's plane.
+/// Of a point before the light: whether the triangle hides it, and by how much less or more than an edge, as an angle
+/// seen from the light, and in metres to the triangle's plane.
 fn hidden(p: DVec3, [a, b, c]: [DVec3; 3]) -> (bool, f64) {
     let n = (b - a).cross(c - a);
     let turn = n.dot(a).signum();
@@ -112,8 +112,8 @@ fn the_shadow_of_a_triangle_is_what_rays_find_but_for_the_nearest_line() {
     assert!(off * 200 < looked && hits > looked / 50, "{off} of {looked} samples, {hits} hidden");
 }
 
-/// Figure 6: the half-plane H0 of an edge in the triangle's plane, projected by two points of its boundary, the side told
-/// by where a point of H0 lies.
+/// Figure 6: the half-plane H0 of an edge in the triangle's plane, projected by two points of its boundary, on the side
+/// of a point of H0.
 fn by_figure_six(seen: &Seen, [a, b, c]: [DVec3; 3], p: DVec3) -> Option<bool> {
     let height = |v: DVec3| seen.normal.dot(v - seen.position);
     let project = |v: DVec3| {
@@ -121,8 +121,8 @@ fn by_figure_six(seen: &Seen, [a, b, c]: [DVec3; 3], p: DVec3) -> Option<bool> {
         v * t
     };
     let (a1, b1) = (project(a), project(b));
-    // Case: between the centre and the facet, or beyond the facet, the projection is in H1; above the centre's own plane
-    // parallel to the facet it is not.
+    // Case: between the centre and the facet, or beyond the facet, the projection is in H1; above the centre's own
+    // plane parallel to the facet it is not.
     let above_light = height(c) > height(DVec3::ZERO);
     let side = |v: DVec3| seen.normal.dot((b1 - a1).cross(v - a1));
     let boundary_is_above = [a, b].iter().any(|v| height(*v) > height(DVec3::ZERO));

@@ -1,10 +1,10 @@
-//! Masks that one can tell by hand. The facet lies 4 metres below the light, which faces it; a pixel is 1 decimetre wide,
-//! and a column of the 8 x 4 samples an eighth of that.
+//! Masks that one can tell by hand. The facet lies 4 metres below the light, which faces it; a pixel is 1 decimetre
+//! wide, and a column of the 8 x 4 samples an eighth of that.
 
 use super::blockers::{Seen, random_seen, shadows};
 use super::*;
 
-/// Seen from beside the light, straight down: x of the picture is x of space, y down is -y.
+/// Seen from beside the light, straight down: x of the image is x of space, y down is -y.
 fn floor() -> Seen {
     Seen {
         position: DVec3::new(0.0, 0.0, 4.0),
@@ -72,7 +72,7 @@ fn a_triangle_through_the_facet_ends_at_the_line_where_they_meet_and_makes_sampl
     // A slope from the light's side, at x > 0.02, down through the floor: it meets the floor at x = 0.02.
     let t = [[9.02, -90.0, -5.0], [9.02, 90.0, -5.0], [-8.98, 0.0, 13.0]];
     let [hidden, invalid] = shadow(floor(), t);
-    // The slope stands over x > 0.02. The light lies below it on the other side: what is beyond the slope is hidden.
+    // The slope stands over x > 0.02. The light lies below it on the other side: points beyond the slope are hidden.
     assert_eq!(hidden, picked(|s| s.x > 0.2), "hidden {hidden:032b}");
     assert_eq!(invalid, picked(|s| s.x > 0.2), "invalid {invalid:032b}");
     // The same slope whose line leaves the pixel's middle on the other side: valid is where the middle is.
@@ -91,15 +91,15 @@ fn only_what_is_seen_through_the_meeting_is_invalid() {
     let [hidden, invalid] = shadow(floor(), [middle, bottom, foot]);
     assert_eq!(invalid, picked(|s| beyond(s) && s.y < 0.0), "invalid {invalid:032b}");
     assert_eq!(hidden & !picked(beyond), 0, "hidden {hidden:032b}");
-    // The other half parts what is left, and nothing twice.
+    // The other half splits the rest, and nothing twice.
     let [_, rest] = shadow(floor(), [top, middle, foot]);
     assert_eq!((invalid & rest, invalid | rest), (0, picked(beyond)), "{invalid:032b} {rest:032b}");
-    // One that ends a pixel aside parts nothing, though its line passes.
+    // One that ends a pixel away splits nothing, though its line passes.
     let aside = [[9.02, 0.2, -5.0], bottom, [-8.98, 0.2, 13.0]];
     assert_eq!(shadow(floor(), aside)[1], 0);
 }
 
-/// What the middle sees of a sample's place through a triangle, by the place's way from the middle.
+/// Visibility of a sample position from the centre through a triangle, by the offset of the position.
 fn is_behind(seen: &Seen, [a, b, c]: [DVec3; 3], s: DVec2) -> Option<bool> {
     let (from, to) = (seen.position, seen.place(s)?);
     let n = (b - a).cross(c - a);
@@ -142,7 +142,7 @@ fn a_sample_is_invalid_if_a_triangle_stands_between_it_and_the_middle() {
 fn a_triangle_seen_edge_on_hides_nothing() {
     let t = [[0.0, 0.0, 1.0], [0.5, 0.0, 3.0], [-0.5, 0.0, 3.0]];
     assert_eq!(shadow(floor(), t), [0, 0]);
-    // And where it meets the facet, it parts the pixel all the same.
+    // Where it meets the facet, it still splits the pixel.
     let t = [[0.5, 0.03, 5.0], [-0.5, 0.03, 5.0], [0.0, 0.0, 0.0]];
     let [hidden, _] = shadow(floor(), t);
     assert_eq!(hidden, 0);
@@ -156,7 +156,7 @@ fn grazing() -> Seen {
         normal: DVec3::NEG_Z,
         eye,
         across: DVec3::new(0.0, 0.1, 0.0),
-        // Down in the picture is towards the floor.
+        // Down in the image is towards the floor.
         down: DVec3::new(0.0, 0.0, 0.1),
     }
 }
@@ -178,7 +178,7 @@ fn a_facet_at_a_grazing_angle_ends_at_its_horizon() {
     let all = half_planes::all(&grid());
     assert_eq!(masks(grazing()), [picked(|s| s.y > -0.1); 2]);
     assert_eq!(masks(floor()), [all, all]);
-    // A wall across the light's plane, seen face on: what is behind the light's plane is not before it.
+    // A wall across the light's plane, seen face on: geometry behind the light's plane is not before it.
     let wall = Seen {
         position: DVec3::new(2.0, 0.0, 0.01),
         normal: DVec3::NEG_X,
@@ -206,7 +206,7 @@ fn a_shadow_on_a_grazing_facet_is_where_its_points_are() {
 
 #[test]
 fn a_light_in_the_cameras_plane_is_no_special_case() {
-    // The eye's plane z = 0 is that of the light, and the plane through the camera that is parallel to the picture.
+    // The eye's plane z = 0 is that of the light, and the plane through the camera that is parallel to the image plane.
     let seen = Seen { eye: DVec3::new(1.0, 0.0, 0.0), ..floor() };
     let t = [[0.01, -9.0, 2.0], [0.01, 9.0, 2.0], [9.0, 0.0, 2.0]];
     let [hidden, invalid] = shadow(seen, t);

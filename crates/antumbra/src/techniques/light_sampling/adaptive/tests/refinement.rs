@@ -1,4 +1,4 @@
-//! A technique whose tree is refined by made-up measures, and what holds for every tree.
+//! A technique whose tree is refined by made-up measures, and the invariants of every tree.
 
 use super::twin::{Cell, Tree};
 use super::{Trial, gpu};
@@ -95,7 +95,7 @@ impl Refinement {
         bytemuck::pod_collect_to_vec(&block_on(read_buffer(gpu(), buffer)).unwrap_or_else(|e| panic!("{e}")))
     }
 
-    /// Builds the tree anew from the measures of a frame; maps rest or not.
+    /// Builds the tree from the measures of a frame; maps rest or not.
     pub fn refine(&mut self, frame: usize, rest: bool) -> Outcome {
         let (plan, weigh) = (&self.technique.pipelines.plan, &self.technique.pipelines.weigh);
         self.run(&[(plan, TreePlan::round(0, rest, true))]);
@@ -154,7 +154,7 @@ impl Refinement {
         assert_eq!(drawn, outcome.drawn, "maps that passes draw, and maps that the tree counts as drawn");
     }
 
-    /// Carries the tree over from frame to frame; `measure` is what the frame before has found.
+    /// Carries the tree over from frame to frame; `measure` is the last frame's.
     pub fn carry_over(&mut self, measure: impl Fn(usize) -> f32, rest: bool) -> Outcome {
         let mut cells = self.words(&self.tree.cells);
         for (k, words) in cells.chunks_exact_mut(3).enumerate() {
@@ -173,7 +173,7 @@ impl Refinement {
         Tree::of_splits(self.plan().shape.axes, self.plan().shape.depth, outcome.split.clone())
     }
 
-    /// What holds for every tree. Returns the samples that have a layer.
+    /// Invariants of every tree. Returns the samples that have a layer.
     pub fn check(&self, outcome: &Outcome) -> BTreeSet<u32> {
         let has_map = |slot: &[u32; 2]| slot[0] != NONE && slot[1] != NONE;
         let list: Vec<u32> = outcome.slots.iter().filter(|s| has_map(s)).map(|s| s[0]).collect();

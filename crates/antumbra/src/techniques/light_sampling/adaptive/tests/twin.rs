@@ -69,8 +69,8 @@ impl Tree {
         ends.into_iter().map(|(x, y)| self.sample(c, UVec2::new(x, y))).collect()
     }
 
-    /// Level by level: the largest measure first, the first in the list among equals, up to the first cell for whose
-    /// samples there is no room.
+    /// Level by level: the largest measure first, the first in the list among equals, up to the first cell whose
+    /// samples exceed the capacity.
     pub fn refine(&mut self, measure: impl Fn(Cell) -> f32, threshold: f32, capacity: usize) {
         for level in 0..self.depth {
             let mut wishes = self.cells_of(level);

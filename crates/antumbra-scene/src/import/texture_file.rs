@@ -4,11 +4,11 @@ use crate::{Material, Texture};
 use image::{ImageFormat, ImageReader, Limits, RgbaImage};
 use std::io::Cursor;
 
-/// Decodes a PNG or JPEG file; the error says what is wrong, without the file's name.
+/// Decodes a PNG or JPEG file; the error does not name the file.
 pub(super) fn decode(bytes: &[u8]) -> Result<RgbaImage, String> {
     let mut reader = ImageReader::new(Cursor::new(bytes)).with_guessed_format().map_err(|e| e.to_string())?;
     if !matches!(reader.format(), Some(ImageFormat::Png | ImageFormat::Jpeg)) {
-        return Err("the picture is neither PNG nor JPEG; convert it to PNG".to_string());
+        return Err("the image is neither PNG nor JPEG; convert it to PNG".to_string());
     }
     // A few bytes can claim gigabytes.
     let mut limits = Limits::default();

@@ -1,4 +1,4 @@
-//! A whole picture on all cores.
+//! A whole image on all cores.
 
 use crate::tracer::Tracer;
 use crate::view::{Pixel, View};
@@ -6,10 +6,10 @@ use antumbra_scene::Scene;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
 
-/// How finely a picture is traced.
+/// Sampling and size of an image.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Pixels a row, > 0.
+    /// Pixels per row, > 0.
     pub width: u32,
     /// Rows, > 0.
     pub height: u32,
@@ -23,20 +23,21 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// The usual quality, 1024 shadow rays and 16 primary rays a pixel, for a picture of some size.
+    /// The usual quality, 1024 shadow rays and 16 primary rays per pixel, for an image of this size.
     pub fn of_size(width: u32, height: u32) -> Settings {
         Settings { width, height, light_samples: 1024, pixel_samples: 16, seed: 0 }
     }
 }
 
-/// The truth about one picture. All lists are `width * height` long, row 0 on top.
+/// The truth of one image. All lists are `width * height` long, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
-    /// Pixels a row.
+    /// Pixels per row.
     pub width: u32,
     /// Rows.
     pub height: u32,
-    /// Fraction of the light's area that is seen, box-filtered over the pixel's sub-pixels; 1 where there is no surface.
+    /// Fraction of the light's area that is seen, box-filtered over the pixel's sub-pixels; 1 where there is no
+    /// surface.
     pub visibility: Vec<f32>,
     /// True where errors are to be measured: every sub-pixel sees a surface that faces the light and lies in front of
     /// it, the cosines between the direction to the light's centre and both normals over 0.1.
@@ -68,7 +69,7 @@ impl Reference {
     }
 }
 
-/// Why there is no picture.
+/// Errors of tracing.
 #[derive(Debug, thiserror::Error, PartialEq, Eq)]
 pub enum ReferenceError {
     /// The caller asked to stop.
@@ -82,7 +83,7 @@ pub enum ReferenceError {
     Degenerate(&'static str),
 }
 
-/// Traces the whole picture on the current rayon pool.
+/// Traces the whole image on the current rayon pool.
 ///
 /// `progress` is called from any thread with the fraction that is done, in (0, 1]. Once `cancel` is set, the call ends
 /// within about the time of a row.
@@ -115,7 +116,7 @@ pub fn trace(
 }
 
 /// Traces the hard shadow of the light's centre through given places of every pixel, in parts of a pixel from its upper
-/// left corner: what a technique that samples a pixel at these places has to find.
+/// left corner: the result that a technique with samples at these positions must give.
 ///
 /// # Panics
 /// If there are no places.
