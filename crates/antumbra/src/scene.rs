@@ -202,10 +202,8 @@ impl Placed {
         }
         let around = |only: fn(&Role) -> bool| {
             let chosen = instances.iter().zip(&self.roles).filter(|(_, role)| only(role));
-            chosen.fold(Aabb::EMPTY, |bounds, (i, _)| {
-                let corners = self.boxes[i.mesh].corners().map(|c| i.world_from_object.transform_point3(c));
-                bounds.union(&Aabb::of_points(corners))
-            })
+            chosen
+                .fold(Aabb::EMPTY, |bounds, (i, _)| bounds.union(&self.boxes[i.mesh].transformed(&i.world_from_object)))
         };
         casters.bounds = around(|_| true);
         casters.occluder_bounds = around(|role| *role == Role::Caster);

@@ -1,4 +1,4 @@
-//! Scan, sort and compaction on the GPU against the CPU: all lengths around the ends of threads, workgroups and blocks,
+//! Scan and sort on the GPU against the CPU: all lengths around the ends of threads, workgroups and blocks,
 //! lists of a million, and lengths that only the GPU knows.
 
 mod common;
@@ -7,7 +7,6 @@ use antumbra::Error;
 use antumbra::gpu::readback::read_buffer;
 use antumbra::gpu::recorder::Recorder;
 use antumbra::gpu::resources::{Resources, storage_buffer};
-use antumbra::passes::lists::compact::{Compaction, Element};
 use antumbra::passes::lists::list_length::ListLength;
 use antumbra::passes::lists::scan::Scan;
 use antumbra::passes::lists::sort::Sort;
@@ -151,33 +150,4 @@ fn a_sort_orders_keys_and_keeps_the_order_of_equal_ones() {
     check_sort(&vec![5; 5000], 4);
     check_sort(&(0..5000).rev().collect::<Vec<_>>(), 13);
     check_sort(&[u32::MAX, 0, u32::MAX, 1], 32);
-}
-
-fn check_compact(words: &[u32], element: Element, keep: impl Fn(usize) -> bool) {
-    let per = if element == Element::Pair { 2 } else { 1 };
-    let n = words.len() / per;
-    let flags: Vec<u32> = (0..n).map(|i| u32::from(keep(i))).collect();
-    let (elements, flags, compacted) = (buffer_with(words), buffer_with(&flags), buffer_with(words));
-    let length = counted(n as u32);
-    let list = Compaction { element, elements: &elements, length: &length, flags: &flags, compacted: &compacted };
-    let kept = run(|recorder| list.record(recorder, "compact"));
-    let expected: Vec<u32> = (0..n).filter(|&i| keep(i)).flat_map(|i| words[i * per..(i + 1) * per].to_vec()).collect();
-    assert_eq!(words_of(&kept.0)[3] as usize, expected.len() / per, "{n} elements: how many are kept");
-    let got = words_of(&compacted);
-    assert!(got[..expected.len()] == expected, "{n} elements of {per} words");
-    let beyond = expected.len()..words.len();
-    assert!(got[beyond.clone()] == words[beyond], "{n} elements of {per} words: written beyond what is kept");
-}
-
-#[test]
-fn a_compaction_keeps_what_is_flagged_in_its_order() {
-    for n in LENGTHS {
-        let words = random_words(u64::from(n) + 9, 2 * n);
-        check_compact(&words, Element::Pair, |i| !words[2 * i].is_multiple_of(3));
-        check_compact(&words[..n as usize], Element::Word, |i| words[i].is_multiple_of(5));
-        check_compact(&words[..n as usize], Element::Word, |_| true);
-        check_compact(&words[..n as usize], Element::Word, |_| false);
-    }
-    let words = random_words(4, MANY);
-    check_compact(&words, Element::Word, |i| words[i] & 1 == 0);
 }

@@ -67,7 +67,7 @@ pub trait TechniqueFactory: 'static {
     /// The technique that it makes.
     type Technique: Technique + 'static;
     /// Name on the command line, title, source, and one sentence.
-    const ABOUT: TechniqueAbout;
+    const DESCRIPTION: Description;
     /// The resources of its most demanding shader, if they are more than every WebGPU device gives.
     const NEEDS: Needs = Needs::CORE;
 
@@ -81,7 +81,7 @@ pub trait TechniqueFactory: 'static {
 }
 
 /// The description of a technique for lists and documents.
-pub struct TechniqueAbout {
+pub struct Description {
     /// Name on the command line.
     pub name: &'static str,
     /// Name for people.
@@ -95,16 +95,16 @@ pub struct TechniqueAbout {
 /// The list entry of a technique.
 pub(crate) const fn entry<T: TechniqueFactory>() -> TechniqueInfo {
     TechniqueInfo {
-        name: T::ABOUT.name,
-        title: T::ABOUT.title,
-        source: T::ABOUT.source,
-        summary: T::ABOUT.summary,
+        name: T::DESCRIPTION.name,
+        title: T::DESCRIPTION.title,
+        source: T::DESCRIPTION.source,
+        summary: T::DESCRIPTION.summary,
         settings: T::Settings::FIELDS,
         needs: T::NEEDS,
         defaults: |given| serde_json::to_value(T::defaults(given)).expect("settings are plain data"),
         make: |gpu, value| {
             let settings = serde_json::from_value(value).map_err(|e| SpecError::Value {
-                technique: T::ABOUT.name.to_owned(),
+                technique: T::DESCRIPTION.name.to_owned(),
                 key: "settings".to_owned(),
                 value: String::new(),
                 expected: e.to_string(),

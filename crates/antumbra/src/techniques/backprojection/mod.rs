@@ -18,7 +18,7 @@ use crate::passes::maps::depth_pyramid::DepthPyramid;
 use crate::passes::maps::patch_pyramid::patch_pyramid;
 use crate::passes::pixels::classify::{Listing, PenumbraList};
 use crate::passes::pixels::sparse::shade_sparsely;
-use crate::technique::{Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, Technique, TechniqueFactory};
 use crate::{bindings, gpu_struct};
 use serde_json::{Map, Value};
 use std::sync::Arc;
@@ -53,7 +53,7 @@ pub struct Backprojection {
 impl TechniqueFactory for Backprojection {
     type Settings = BackprojectionSettings;
     type Technique = Backprojection;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "backprojection",
         title: "Layered back-projection",
         source: "Guennebaud 2006, 2007",

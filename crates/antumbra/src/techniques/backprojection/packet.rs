@@ -6,7 +6,7 @@
 use super::{Backprojection, BackprojectionSettings, Spacing};
 use crate::error::{Error, SpecError};
 use crate::gpu::device::Gpu;
-use crate::technique::{TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, TechniqueFactory};
 use serde_json::{Map, Value};
 
 /// [`Backprojection`] by packets of 64 neighbouring pixels.
@@ -15,7 +15,7 @@ pub struct Packet;
 impl TechniqueFactory for Packet {
     type Settings = BackprojectionSettings;
     type Technique = Backprojection;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "packet",
         title: "Layered back-projection by packets",
         source: "Yang 2009",
@@ -29,7 +29,7 @@ impl TechniqueFactory for Packet {
     fn make(gpu: &Gpu, settings: BackprojectionSettings) -> Result<Backprojection, Error> {
         if settings.spacing != Spacing::S1 {
             return Err(Error::Spec(SpecError::Value {
-                technique: Self::ABOUT.name.to_owned(),
+                technique: Self::DESCRIPTION.name.to_owned(),
                 key: "spacing".to_owned(),
                 value: settings.spacing.pixels().to_string(),
                 expected: "a packet consists of adjacent pixels: leave it at 1, or use `backprojection`".to_owned(),

@@ -22,7 +22,7 @@ use crate::passes::maps::depth_pyramid::DepthPyramid;
 use crate::passes::pixels::classify::{Listing, PenumbraList};
 use crate::passes::pixels::penumbra_widths::penumbra_widths;
 use crate::technique::settings::Kind;
-use crate::technique::{Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, Technique, TechniqueFactory};
 use crate::{bindings, gpu_struct};
 use std::sync::Arc;
 
@@ -60,7 +60,7 @@ pub struct SmoothPcss;
 impl TechniqueFactory for Pcss {
     type Settings = PcssSettings;
     type Technique = Pcss;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "pcss",
         title: "Percentage-closer soft shadows",
         source: "Fernando 2005",
@@ -75,7 +75,7 @@ impl TechniqueFactory for Pcss {
 impl TechniqueFactory for SmoothPcss {
     type Settings = PcssSettings;
     type Technique = Pcss;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "smooth-pcss",
         title: "Percentage-closer soft shadows, antialiased",
         source: "Shen 2011, section 4",

@@ -6,7 +6,7 @@ use super::{Pvssm, PvssmSettings, Rho};
 use crate::error::Error;
 use crate::gpu::device::Gpu;
 use crate::gpu::limits::Needs;
-use crate::technique::{TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, TechniqueFactory};
 use serde_json::{Map, Value};
 
 /// [`Pvssm`] of a point at the light's centre.
@@ -15,7 +15,7 @@ pub struct Fvsm;
 impl TechniqueFactory for Fvsm {
     type Settings = PvssmSettings;
     type Technique = Pvssm;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "fvsm",
         title: "Fitted virtual shadow maps",
         source: "Giegl 2007",
@@ -28,6 +28,6 @@ impl TechniqueFactory for Fvsm {
     }
 
     fn make(gpu: &Gpu, settings: PvssmSettings) -> Result<Pvssm, Error> {
-        Pvssm::new(gpu, Self::ABOUT.name, settings, true)
+        Pvssm::new(gpu, Self::DESCRIPTION.name, settings, true)
     }
 }

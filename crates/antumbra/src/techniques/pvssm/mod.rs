@@ -27,7 +27,7 @@ use crate::gpu::recorder::Recorder;
 use crate::gpu::resources::uniform;
 use crate::gpu_struct;
 use crate::input::frame::{Frame, MapInput};
-use crate::technique::{StatsFuture, Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, StatsFuture, Technique, TechniqueFactory};
 use analysis::Analysis;
 use drawing::{Drawing, Pool};
 use filtering::Filtering;
@@ -88,7 +88,7 @@ pub struct Pvssm {
 impl TechniqueFactory for Pvssm {
     type Settings = PvssmSettings;
     type Technique = Pvssm;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "pvssm",
         title: "Predicted virtual soft shadow maps",
         source: "Shen 2011",
@@ -99,7 +99,7 @@ impl TechniqueFactory for Pvssm {
     const NEEDS: Needs = Needs { workgroup_bytes: 19584, ..Needs::CORE };
 
     fn make(gpu: &Gpu, settings: PvssmSettings) -> Result<Pvssm, Error> {
-        Pvssm::new(gpu, Self::ABOUT.name, settings, false)
+        Pvssm::new(gpu, Self::DESCRIPTION.name, settings, false)
     }
 }
 

@@ -21,7 +21,7 @@ use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::Texture;
 use crate::input::frame::Frame;
-use crate::technique::{StatsFuture, Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, StatsFuture, Technique, TechniqueFactory};
 use accumulate::soft_shadow_map;
 use maps::Maps;
 use patches::Patches;
@@ -54,7 +54,7 @@ pub struct SsmMaps {
 impl TechniqueFactory for Ssm {
     type Settings = SsmSettings;
     type Technique = Ssm;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "ssm",
         title: "Soft shadow maps",
         source: "Atty 2006",

@@ -19,7 +19,7 @@ use crate::passes::lists::texel_lists::TexelLists;
 use crate::passes::pixels::geometry_buffer::GeometryBuffer;
 use crate::passes::triangles::triangle_pairs::{PairCapacity, PairShader, TrianglePairs};
 use crate::technique::settings::Kind;
-use crate::technique::{StatsFuture, Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, StatsFuture, Technique, TechniqueFactory};
 use crate::{bindings, gpu_struct};
 use std::sync::Arc;
 
@@ -55,7 +55,7 @@ pub struct AliasFree {
 impl TechniqueFactory for AliasFree {
     type Settings = AliasFreeSettings;
     type Technique = AliasFree;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "alias-free",
         title: "Alias-free shadow map",
         source: "Aila 2004, Sintorn 2008",

@@ -15,7 +15,7 @@ use crate::gpu::shader::ShaderKey;
 use crate::input::frame::Frame;
 use crate::passes::triangles::light_triangles::{AreaTriangles, Part};
 use crate::technique::settings::Kind;
-use crate::technique::{Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, Technique, TechniqueFactory};
 use crate::{bindings, gpu_struct};
 use glam::{DVec2, Vec2, Vec4};
 use lattice::{Lattice, MOST_POINTS, MOST_ROWS};
@@ -89,7 +89,7 @@ pub struct AliasFreeSoft {
 impl TechniqueFactory for AliasFreeSoft {
     type Settings = AliasFreeSoftSettings;
     type Technique = AliasFreeSoft;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "alias-free-soft",
         title: "Alias-free soft shadows",
         source: "after Sintorn 2008",

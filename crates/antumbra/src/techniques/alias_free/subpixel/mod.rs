@@ -33,7 +33,7 @@ use crate::passes::lists::texel_lists::TexelLists;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::passes::triangles::silhouette::{Marking, SilhouetteMask};
 use crate::passes::triangles::triangle_pairs::{PairCapacity, PairShader, TrianglePairs};
-use crate::technique::{StatsFuture, Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, StatsFuture, Technique, TechniqueFactory};
 use crate::{binding_array, bindings, gpu_struct};
 use capacity::CapacityPlan;
 use glam::UVec4;
@@ -81,7 +81,7 @@ struct Counted {
 impl TechniqueFactory for Subpixel {
     type Settings = SubpixelSettings;
     type Technique = Subpixel;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "subpixel",
         title: "Sub-pixel antialiased shadow maps",
         source: "Pan 2009",

@@ -24,7 +24,7 @@ use crate::passes::maps::depth_map::DepthMap;
 use crate::passes::maps::depth_pyramid::DepthPyramid;
 use crate::passes::maps::light_maps::LightMaps;
 use crate::passes::pixels::classify::{Listing, PenumbraList};
-use crate::technique::{StatsFuture, Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, StatsFuture, Technique, TechniqueFactory};
 use crate::techniques::light_sampling::uniform::Evaluate;
 use rounds::{Rounds, Sum};
 use state::{Tree, TreeKey, TreePlan};
@@ -88,7 +88,7 @@ impl Pipelines {
 impl TechniqueFactory for AdaptiveSampling {
     type Settings = AdaptiveSamplingSettings;
     type Technique = AdaptiveSampling;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "adaptive-sampling",
         title: "Adaptive light-source sampling",
         source: "Schwärzler 2009",

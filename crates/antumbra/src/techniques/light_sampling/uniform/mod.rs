@@ -16,7 +16,7 @@ use crate::input::frame::{Frame, MapInput};
 use crate::passes::maps::light_maps::draw::Layers;
 use crate::passes::maps::light_maps::{Entry, Evaluation, LightMaps, MapSlot, entry_list};
 use crate::technique::settings::Kind;
-use crate::technique::{StatsFuture, Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, StatsFuture, Technique, TechniqueFactory};
 use glam::Vec2;
 
 crate::choices! {
@@ -113,7 +113,7 @@ impl Plan {
 impl TechniqueFactory for UniformSampling {
     type Settings = UniformSamplingSettings;
     type Technique = UniformSampling;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "uniform-sampling",
         title: "Light-source sampling",
         source: "Heckbert, Herf 1997; Schwärzler 2009, section 3.2",

@@ -2,7 +2,7 @@
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat, fourier};
-use crate::technique::TechniqueAbout;
+use crate::technique::Description;
 use crate::technique::settings::Kind;
 
 crate::choices! {
@@ -35,7 +35,7 @@ pub struct Convolution;
 
 impl Prefilter for Convolution {
     type Settings = CsmSettings;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "csm",
         title: "Convolution shadow maps",
         source: "Annen 2007",

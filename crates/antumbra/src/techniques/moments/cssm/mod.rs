@@ -3,7 +3,7 @@
 use super::summed::{Plan, Soft, SoftUniform, Summed};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat, fourier};
 use crate::passes::maps::summed_area::{Sums, TableShape};
-use crate::technique::TechniqueAbout;
+use crate::technique::Description;
 use crate::technique::settings::Kind;
 
 crate::settings! {
@@ -24,7 +24,7 @@ pub struct ConvolutionSoft;
 
 impl Soft for ConvolutionSoft {
     type Settings = CssmSettings;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "cssm",
         title: "Convolution soft shadow maps",
         source: "Annen 2008",

@@ -2,7 +2,7 @@
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
-use crate::technique::TechniqueAbout;
+use crate::technique::Description;
 use crate::technique::settings::Kind;
 use glam::Vec2;
 
@@ -37,7 +37,7 @@ pub struct Exponential;
 
 impl Prefilter for Exponential {
     type Settings = EsmSettings;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "esm",
         title: "Exponential shadow maps",
         source: "Annen 2008, Salvi 2008",

@@ -2,7 +2,7 @@
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
-use crate::technique::TechniqueAbout;
+use crate::technique::Description;
 use crate::technique::settings::Kind;
 use glam::Vec2;
 
@@ -43,7 +43,7 @@ pub struct ExponentialVariance;
 
 impl Prefilter for ExponentialVariance {
     type Settings = EvsmSettings;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "evsm",
         title: "Exponential variance shadow maps",
         source: "Lauritzen, McCool 2008",

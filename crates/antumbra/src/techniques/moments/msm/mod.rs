@@ -2,7 +2,7 @@
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
-use crate::technique::TechniqueAbout;
+use crate::technique::Description;
 use crate::technique::settings::Kind;
 
 crate::choices! {
@@ -33,7 +33,7 @@ pub struct Moments;
 
 impl Prefilter for Moments {
     type Settings = MsmSettings;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "msm",
         title: "Moment shadow maps",
         source: "Peters, Klein 2015",

@@ -11,7 +11,7 @@ use crate::gpu::shader::ShaderKey;
 use crate::input::frame::Frame;
 use crate::passes::maps::moments::{DepthWarp, MomentMap, MomentShape, Nearest, TexelFormat};
 use crate::technique::settings::Settings;
-use crate::technique::{Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, Technique, TechniqueFactory};
 use crate::{bindings, gpu_struct};
 use glam::Vec2;
 use std::{marker::PhantomData, sync::Arc};
@@ -21,7 +21,7 @@ pub trait Prefilter: 'static {
     /// Its settings, declared by [`prefilter_settings!`](crate::prefilter_settings!).
     type Settings: Settings + HasFiltering;
     /// Its description.
-    const ABOUT: TechniqueAbout;
+    const DESCRIPTION: Description;
     /// Path of its `warp.wesl` below `src`.
     const WARP: &'static str;
 
@@ -142,7 +142,7 @@ pub struct Prefiltered<P: Prefilter> {
 impl<P: Prefilter> TechniqueFactory for Prefiltered<P> {
     type Settings = P::Settings;
     type Technique = Prefiltered<P>;
-    const ABOUT: TechniqueAbout = P::ABOUT;
+    const DESCRIPTION: Description = P::DESCRIPTION;
 
     fn make(gpu: &Gpu, settings: P::Settings) -> Result<Prefiltered<P>, Error> {
         let (filtering, stored) = (settings.filtering(), P::stored(&settings));

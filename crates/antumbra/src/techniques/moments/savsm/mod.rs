@@ -4,7 +4,7 @@
 use super::summed::{Plan, Soft, SoftUniform, Summed};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
 use crate::passes::maps::summed_area::{Sums, TableShape};
-use crate::technique::TechniqueAbout;
+use crate::technique::Description;
 use crate::technique::settings::Kind;
 
 crate::settings! {
@@ -27,7 +27,7 @@ pub struct SummedVariance;
 
 impl Soft for SummedVariance {
     type Settings = SavsmSettings;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "savsm",
         title: "Summed-area variance shadow maps",
         source: "Lauritzen 2007",

@@ -16,7 +16,7 @@ use crate::passes::maps::summed_area::{SummedArea, Sums, TableShape};
 use crate::passes::pixels::classify::{Listing, PenumbraList};
 use crate::passes::pixels::penumbra_widths::penumbra_widths;
 use crate::technique::settings::Settings;
-use crate::technique::{Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, Technique, TechniqueFactory};
 use crate::{bindings, gpu_struct};
 use std::{marker::PhantomData, sync::Arc};
 
@@ -25,7 +25,7 @@ pub trait Soft: 'static {
     /// Its settings.
     type Settings: Settings;
     /// Its description.
-    const ABOUT: TechniqueAbout;
+    const DESCRIPTION: Description;
     /// Path below `src` of the module of stored values.
     const WARP: &'static str;
     /// Path below `src` of the module that reads the visible part.
@@ -68,7 +68,7 @@ pub struct Summed<S: Soft> {
 impl<S: Soft> TechniqueFactory for Summed<S> {
     type Settings = S::Settings;
     type Technique = Summed<S>;
-    const ABOUT: TechniqueAbout = S::ABOUT;
+    const DESCRIPTION: Description = S::DESCRIPTION;
 
     fn make(gpu: &Gpu, settings: S::Settings) -> Result<Summed<S>, Error> {
         let plan = S::plan(&settings);

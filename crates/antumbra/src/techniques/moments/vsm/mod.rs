@@ -3,7 +3,7 @@
 
 use super::prefiltered::{Prefilter, Prefiltered, Stored};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
-use crate::technique::TechniqueAbout;
+use crate::technique::Description;
 use crate::technique::settings::Kind;
 
 crate::choices! {
@@ -36,7 +36,7 @@ pub struct Variance;
 
 impl Prefilter for Variance {
     type Settings = VsmSettings;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "vsm",
         title: "Variance shadow maps",
         source: "Donnelly, Lauritzen 2006",

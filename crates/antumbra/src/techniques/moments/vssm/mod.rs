@@ -3,7 +3,7 @@
 use super::summed::{Plan, Soft, SoftUniform, Summed};
 use crate::passes::maps::moments::{DepthWarp, TexelFormat};
 use crate::passes::maps::summed_area::{Sums, TableShape};
-use crate::technique::TechniqueAbout;
+use crate::technique::Description;
 use crate::technique::settings::Kind;
 
 crate::settings! {
@@ -26,7 +26,7 @@ pub struct VarianceSoft;
 
 impl Soft for VarianceSoft {
     type Settings = VssmSettings;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "vssm",
         title: "Variance soft shadow mapping",
         source: "Yang et al. 2010",

@@ -11,7 +11,7 @@ use crate::gpu::shader::ShaderKey;
 use crate::input::frame::Frame;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::technique::settings::Kind;
-use crate::technique::{Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, Technique, TechniqueFactory};
 use std::sync::Arc;
 
 crate::settings! {
@@ -31,7 +31,7 @@ pub struct Hard {
 impl TechniqueFactory for Hard {
     type Settings = HardSettings;
     type Technique = Hard;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "hard",
         title: "Shadow map",
         source: "Williams 1978",

@@ -12,7 +12,7 @@ use crate::gpu::shader::ShaderKey;
 use crate::input::frame::Frame;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::technique::settings::Kind;
-use crate::technique::{Technique, TechniqueAbout, TechniqueFactory};
+use crate::technique::{Description, Technique, TechniqueFactory};
 use crate::{bindings, gpu_struct};
 use std::sync::Arc;
 
@@ -63,7 +63,7 @@ pub struct Pcf {
 impl TechniqueFactory for Pcf {
     type Settings = PcfSettings;
     type Technique = Pcf;
-    const ABOUT: TechniqueAbout = TechniqueAbout {
+    const DESCRIPTION: Description = Description {
         name: "pcf",
         title: "Percentage-closer filtering",
         source: "Reeves et al. 1987",
