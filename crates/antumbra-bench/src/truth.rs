@@ -1,7 +1,7 @@
 //! The ray-traced reference, from the cache where it was traced before.
 
 use crate::{Error, Monitor};
-use antumbra_metrics::{Figures, Image, MetricsError, RgbImage, figures, heat_map};
+use antumbra_metrics::{Image, Metrics, MetricsError, RgbImage, heat_map, metrics};
 use antumbra_reference::cache::{Cached, trace_cached};
 use antumbra_reference::{Reference, Settings, trace};
 use antumbra_scene::Scene;
@@ -71,8 +71,8 @@ impl Truth {
     }
 
     /// Error metrics of a technique's visibility.
-    pub fn metrics(&self, spec: &str, visibility: &[f32]) -> Result<Figures, Error> {
-        self.against(spec, visibility, figures)
+    pub fn metrics(&self, spec: &str, visibility: &[f32]) -> Result<Metrics, Error> {
+        self.against(spec, visibility, metrics)
     }
 
     /// Signed error of a technique's visibility as colours.

@@ -1,4 +1,4 @@
-//! Figures that judge by the eye, by libraries.
+//! Metrics that judge by the eye, by libraries.
 
 use crate::image::Pair;
 

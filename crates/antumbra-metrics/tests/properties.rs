@@ -1,11 +1,11 @@
 //! What holds for every pair of images.
 
-use antumbra_metrics::{Figures, Image, figures};
+use antumbra_metrics::{Image, Metrics, metrics};
 use proptest::prelude::*;
 
-fn compare(test: &[f32], truth: &[f32], w: u32, valid: &[bool]) -> Figures {
+fn compare(test: &[f32], truth: &[f32], w: u32, valid: &[bool]) -> Metrics {
     let h = truth.len() as u32 / w;
-    figures(Image::new(w, h, test).unwrap(), Image::new(w, h, truth).unwrap(), valid).unwrap()
+    metrics(Image::new(w, h, test).unwrap(), Image::new(w, h, truth).unwrap(), valid).unwrap()
 }
 
 /// Lit, umbra and everything between, so that every class has members.
@@ -29,7 +29,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(128))]
 
     #[test]
-    fn figures_stay_in_their_bounds((w, a, b, valid) in pair()) {
+    fn metrics_stay_in_their_bounds((w, a, b, valid) in pair()) {
         let f = compare(&a, &b, w, &valid);
         for figure in [f.average_error, f.rmse, f.p99, f.max, f.leak, f.acne, f.flip] {
             prop_assert!((0.0..=1.0).contains(&figure), "{f:?}");

@@ -119,7 +119,7 @@ impl App {
             .memory
             .area
             .map_or_else(Vec::new, |area| light::handles(&view_state.light, &ui::screen(view_state, area)));
-        let error = |h: &crate::session::Half| h.measured.figures.as_ref()?.as_ref().ok().map(|f| f.average_error);
+        let error = |h: &crate::session::Half| h.measured.metrics.as_ref()?.as_ref().ok().map(|f| f.average_error);
         State {
             scene: view_state.open.as_ref().filter(|_| session.loaded.is_some()).map(|o| o.source.clone()),
             drawn: [0, 1].map(|i| halves[i].made.as_ref().map(|m| m.0.text())),

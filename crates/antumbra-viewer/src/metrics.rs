@@ -5,7 +5,7 @@ use crate::readback::Readback;
 use crate::truth::Truth;
 use antumbra::Gpu;
 use antumbra::gpu::texture::Texture;
-use antumbra_metrics::{ErrorFigures, Image, error_figures};
+use antumbra_metrics::{ErrorMetrics, Image, error_metrics};
 use web_time::{Duration, Instant};
 
 /// Shortest time between two measurements.
@@ -15,7 +15,7 @@ const PAUSE: Duration = Duration::from_millis(400);
 #[derive(Default)]
 pub struct Measured {
     /// The metrics, or the error.
-    pub figures: Option<Result<ErrorFigures, String>>,
+    pub metrics: Option<Result<ErrorMetrics, String>>,
     /// The last visibility, with the image's size.
     pub visibility: Option<([u32; 2], Vec<f32>)>,
     /// Inputs of the metrics: numbers of the image and of the truth.
@@ -27,7 +27,7 @@ pub struct Measured {
     last: Option<Instant>,
 }
 
-type Compared = (Vec<f32>, Result<ErrorFigures, String>);
+type Compared = (Vec<f32>, Result<ErrorMetrics, String>);
 
 impl Measured {
     /// Records that the image was drawn.
@@ -44,9 +44,9 @@ impl Measured {
     pub fn work(&mut self, gpu: &Gpu, visibility: &Texture, truth: &Truth, wake: impl Fn() + Send + 'static) {
         if let Some((of, result)) = self.comparing.as_ref().and_then(|(of, job)| Some((*of, job.poll()?))) {
             self.comparing = None;
-            if let Ok((values, figures)) = result {
+            if let Ok((values, metrics)) = result {
                 let size = visibility.texture.size();
-                (self.figures, self.of) = (Some(figures), Some(of));
+                (self.metrics, self.of) = (Some(metrics), Some(of));
                 self.visibility = Some(([size.width, size.height], values));
             }
         }
@@ -74,10 +74,10 @@ impl Measured {
         drop(image);
         let job = Job::start("Comparing", wake, move |_| async move {
             let image = |data| Image::new(width, height, data);
-            let figures = image(&values)
-                .and_then(|test| error_figures(test, image(&true_values)?, &valid))
+            let metrics = image(&values)
+                .and_then(|test| error_metrics(test, image(&true_values)?, &valid))
                 .map_err(|e| e.to_string());
-            (values, figures)
+            (values, metrics)
         });
         self.comparing = Some((of, job));
     }

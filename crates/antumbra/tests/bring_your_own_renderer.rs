@@ -32,9 +32,9 @@ fn scene() -> Scene {
 }
 
 fn average_error(visibility: &[f32], truth: &antumbra_reference::Reference) -> f64 {
-    use antumbra_metrics::{Image, figures};
+    use antumbra_metrics::{Image, metrics};
     let image = |data| Image::new(host::SIZE, host::SIZE, data).expect("the sizes agree");
-    figures(image(visibility), image(&truth.visibility), &truth.valid).expect("comparable").average_error
+    metrics(image(visibility), image(&truth.visibility), &truth.valid).expect("comparable").average_error
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn places(spec: &str) -> Vec<Vec2> {
 
 struct Drawn {
     visibility: Vec<f32>,
-    figures: BTreeMap<&'static str, f64>,
+    stats: BTreeMap<&'static str, f64>,
 }
 
 /// The third frame, whose lists have the capacity that the first one needed.
@@ -46,8 +46,8 @@ fn drawn_after(scene: &Scene, spec: &str, frames: u32) -> Drawn {
         gpu().wait().expect("the device is there");
     }
     let visibility = shadowed(&renderer, &mut technique).unwrap_or_else(|e| panic!("{spec}: {e}"));
-    let figures = block_on(technique.stats(gpu())).expect("counts").into_iter().collect();
-    Drawn { visibility, figures }
+    let stats = block_on(technique.stats(gpu())).expect("counts").into_iter().collect();
+    Drawn { visibility, stats }
 }
 
 fn differences(drawn: &Drawn, rays: &Reference) -> Vec<f64> {
@@ -60,7 +60,7 @@ fn off(scene: &Scene, spec: &str) -> (f64, Drawn) {
     let rays = trace_centre(scene, SIZE, &places(spec)).unwrap_or_else(|e| panic!("{e}"));
     let drawn = drawn_by(scene, spec);
     let sum: f64 = differences(&drawn, &rays).iter().sum();
-    (sum / drawn.figures["silhouette pixels"], drawn)
+    (sum / drawn.stats["silhouette pixels"], drawn)
 }
 
 #[test]
@@ -70,7 +70,7 @@ fn on_planes_only_the_rounding_of_lines_differs_from_rays() {
         let partial = drawn.visibility.iter().filter(|v| **v > 0.0 && **v < 1.0).count();
         println!(
             "{spec}: {mean:.5} over {} silhouette pixels, {partial} partly in shadow",
-            drawn.figures["silhouette pixels"]
+            drawn.stats["silhouette pixels"]
         );
         assert!(mean < 0.005 && partial > 50, "{spec}: {mean} over silhouettes, {partial} partly in shadow");
     };
@@ -112,14 +112,14 @@ fn invalid_samples_are_those_that_would_darken_a_bumpy_receiver() {
     let rays = trace_centre(&scene, SIZE, &places("subpixel")).unwrap_or_else(|e| panic!("{e}"));
     let [masked, all] = [true, false].map(|on| drawn_by(&scene, &format!("subpixel:statistics=true,validity={on}")));
     let [with, without] = [&masked, &all].map(|d| differences(d, &rays).iter().sum::<f64>());
-    let valid = masked.figures["valid samples half in shadow"];
+    let valid = masked.stats["valid samples half in shadow"];
     println!(
         "bumpy: {valid:.1} of 32 samples valid; differences {with:.1} with the validity mask, {without:.1} without"
     );
     // The paper's bumpy receiver: 18.5 of 32, of pixels at a shadow's boundary.
     assert!((15.0..25.0).contains(&valid), "{valid} of 32 samples are valid");
     assert!(with < 0.25 * without, "{with} with the mask, {without} without");
-    assert_eq!(all.figures["valid samples"], 32.0);
+    assert_eq!(all.stats["valid samples"], 32.0);
 }
 
 #[test]
@@ -144,10 +144,10 @@ fn lists_that_exceed_the_budget_are_made_strip_by_strip() {
     let scene = under_point("fence");
     let [small, large] =
         [1, 256].map(|budget| drawn_after(&scene, &format!("subpixel:map=2048,statistics=true,budget={budget}"), 4));
-    assert!(small.figures["strips"] > 1.0, "{:?}", small.figures);
-    assert_eq!(large.figures["strips"], 1.0);
+    assert!(small.stats["strips"] > 1.0, "{:?}", small.stats);
+    assert_eq!(large.stats["strips"], 1.0);
     let differing = small.visibility.iter().zip(&large.visibility).filter(|(a, b)| a != b).count();
-    assert_eq!(differing, 0, "pixels differ between {} strips and one", small.figures["strips"]);
+    assert_eq!(differing, 0, "pixels differ between {} strips and one", small.stats["strips"]);
 }
 
 #[test]

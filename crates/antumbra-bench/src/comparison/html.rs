@@ -35,7 +35,7 @@ pub fn page(report: &Comparison, images: &[Images]) -> String {
 fn header(report: &Comparison) -> Markup {
     let truth = &report.truth;
     let links = [
-        ("#figures", "Figures"),
+        ("#figures", "Metrics"),
         ("#plot", "Cost"),
         ("#compare", "Compare"),
         ("#techniques", "Techniques"),
@@ -78,7 +78,7 @@ fn lead(report: &Comparison, labels: &[String]) -> Markup {
     };
     let ((near, near_error, near_ms), (fast, fast_error, fast_ms)) = (said(nearest), said(fastest));
     html! {
-        h2 { "Figures" }
+        h2 { "Metrics" }
         @if nearest == fastest {
             p.lead {
                 b { (near) } " errs by " b { (near_error) } " on average in the shadow and takes "

@@ -1,7 +1,7 @@
 //! Results of a comparison.
 
 use crate::measure::Cost;
-use antumbra_metrics::{Figures, RgbImage};
+use antumbra_metrics::{Metrics, RgbImage};
 use serde::Serialize;
 
 /// Results of a comparison. Images are row-major with row 0 on top.
@@ -65,7 +65,7 @@ pub struct Entry {
     pub settings: serde_json::Value,
     /// Error metrics.
     #[serde(rename = "figures")]
-    pub metrics: Figures,
+    pub metrics: Metrics,
     /// Time and memory.
     #[serde(skip)]
     pub cost: Cost,

@@ -3,7 +3,7 @@
 use super::*;
 use crate::ReportError;
 use crate::measure::{Cost, Pass, Timing};
-use antumbra_metrics::{Counts, Image, RgbImage, figures, heat_map};
+use antumbra_metrics::{Counts, Image, RgbImage, heat_map, metrics};
 use std::fs;
 
 const W: u32 = 64;
@@ -33,7 +33,7 @@ fn entry(spec: &str, softness: f32, ms: f64) -> Entry {
         source: "Nobody & Co 2007".into(),
         spec: spec.into(),
         settings: serde_json::json!({"map": 2048, "format": "r32float"}),
-        metrics: figures(test_image, truth_image, &valid).unwrap(),
+        metrics: metrics(test_image, truth_image, &valid).unwrap(),
         cost: Cost {
             passes: vec![pass("geometry", 0.5, true), pass("shadow map", 0.3, false), pass("filter", 0.7, false)],
             total_ms: ms,

@@ -2,7 +2,7 @@
 
 use super::trial::{Run, Trial};
 use crate::measure::{Cost, Timing};
-use antumbra_metrics::{Image, RgbImage, figures};
+use antumbra_metrics::{Image, RgbImage, metrics};
 
 /// A run of this time; technique and metrics are arbitrary.
 pub fn run(spec: &str, ms: f64, stats: &[(&'static str, f64)]) -> Run {
@@ -12,7 +12,7 @@ pub fn run(spec: &str, ms: f64, stats: &[(&'static str, f64)]) -> Run {
         technique: "pcf",
         spec: spec.into(),
         settings: serde_json::json!({"map": 512}),
-        metrics: figures(image(&test), image(&truth), &[true; 4]).unwrap(),
+        metrics: metrics(image(&test), image(&truth), &[true; 4]).unwrap(),
         stats: stats.iter().copied().collect(),
         cost: Cost { passes: Vec::new(), total_ms: ms, total_bytes: 1 << 20, wall_ms: 2.0 * ms, timing: Timing::Gpu },
         image: None,

@@ -5,7 +5,7 @@ use crate::measure::{Cost, Rendered};
 use crate::page::text;
 use crate::truth::Truth;
 use antumbra::Spec;
-use antumbra_metrics::{Figures, RgbImage};
+use antumbra_metrics::{Metrics, RgbImage};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -50,7 +50,7 @@ pub struct Run {
     pub settings: serde_json::Value,
     /// Error metrics.
     #[serde(rename = "figures")]
-    pub metrics: Figures,
+    pub metrics: Metrics,
     /// The technique's statistics, such as the number of maps.
     #[serde(rename = "work")]
     pub stats: BTreeMap<&'static str, f64>,

@@ -2,7 +2,7 @@
 //! parallel to a square light, seen from the light's centre. Its soft shadow is the disk's map, filtered by a box whose
 //! width in pixels is that of the penumbra.
 
-use antumbra_metrics::{Image, figures};
+use antumbra_metrics::{Image, metrics};
 
 /// A disk whose penumbra has a width in pixels.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +86,7 @@ impl Shadow {
     pub fn flip(&self, reference: &Shadow) -> f64 {
         let image = |p| Image::new(self.side, self.side, p).expect("both images have one size");
         let penumbra: Vec<bool> = reference.visibility.iter().map(|v| (0.005..0.995).contains(v)).collect();
-        let found = figures(image(&self.visibility), image(&reference.visibility), &penumbra);
+        let found = metrics(image(&self.visibility), image(&reference.visibility), &penumbra);
         found.expect("every shadow has a penumbra").flip
     }
 }

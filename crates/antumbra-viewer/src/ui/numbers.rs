@@ -25,8 +25,8 @@ pub fn show(ui: &mut egui::Ui, session: &Session, half: usize) {
         }
         row("memory", bytes(bytes_owned), "GPU memory that the technique owns");
     });
-    let Some(figures) = state.measured.figures.as_ref().filter(|_| session.truth.is_some()) else { return };
-    match figures {
+    let Some(metrics) = state.measured.metrics.as_ref().filter(|_| session.truth.is_some()) else { return };
+    match metrics {
         Err(why) => {
             ui.weak(why);
         }

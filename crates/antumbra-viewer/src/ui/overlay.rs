@@ -82,8 +82,8 @@ fn technique(ui: &mut egui::Ui, view_state: &mut ViewState, session: &mut Sessio
     if !state.times.frames.is_empty() && !state.times.untimed {
         facts.push(numbers::milliseconds(state.times.median_total()));
     }
-    if let Some(Ok(figures)) = state.measured.figures.as_ref().filter(|_| session.truth.is_some()) {
-        facts.push(format!("error {:.4}", figures.average_error));
+    if let Some(Ok(metrics)) = state.measured.metrics.as_ref().filter(|_| session.truth.is_some()) {
+        facts.push(format!("error {:.4}", metrics.average_error));
     }
     if !facts.is_empty() {
         ui.label(RichText::new(facts.join("   ")).monospace().color(style::ON_IMAGE));

@@ -3,7 +3,7 @@
 use crate::Judged;
 use crate::common::closed_form::Over;
 use crate::common::{camera, compared, ground, light, quad, scene};
-use antumbra_metrics::Figures;
+use antumbra_metrics::Metrics;
 use antumbra_reference::Reference;
 use antumbra_scene::{RectLight, Scene};
 use glam::DVec3;
@@ -70,7 +70,7 @@ fn overlapping_occluders_are_joined_or_summed_up() {
     assert!(ground > 5000 && overlap > 150, "{ground} pixels of ground, {overlap} where the squares overlap");
     // Where the squares overlap on the light.
     let union_there = Reference { valid: both, ..union.clone() };
-    let show = |what: &str, f: &Figures| {
+    let show = |what: &str, f: &Metrics| {
         println!("{what}: average {:.4}, max {:.4}, leak {:.4}, acne {:.5}", f.average_error, f.max, f.leak, f.acne);
     };
     for bits in [64, 256, 1024] {

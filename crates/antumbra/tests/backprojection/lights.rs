@@ -27,7 +27,7 @@ fn lines_and_points_are_lights_too() {
     ] {
         let judged = Judged::new(&hovering(size), SIZE, 256);
         for spec in ["backprojection:window=16", "packet:window=16"] {
-            let f = judged.figures(spec);
+            let f = judged.metrics(spec);
             println!("{} by {spec}: average {:.4}, max {:.3}, leak {:.4}", judged.name, f.average_error, f.max, f.leak);
             if f.average_error > bound || f.leak > leak || f.acne > 0.001 {
                 faults.push(format!("{} by {spec}: {f:?}", judged.name));
@@ -43,7 +43,7 @@ fn sweep(name: &str, scene: &Scene, distance: f32, bound: f64) {
     for ratio in [0.05, 0.5, 3.0] {
         let mut scene = scene.clone();
         scene.light.size = Vec2::splat(ratio * distance);
-        let f = Judged::new(&scene, SIZE, 256).figures("backprojection");
+        let f = Judged::new(&scene, SIZE, 256).metrics("backprojection");
         println!(
             "{name}, light of {ratio} times the distance: average {:.4}, max {:.3}, leak {:.4}, acne {:.5}",
             f.average_error, f.max, f.leak, f.acne

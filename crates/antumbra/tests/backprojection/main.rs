@@ -10,7 +10,7 @@ mod planes;
 mod scenes;
 mod steady;
 
-use antumbra_metrics::Figures;
+use antumbra_metrics::Metrics;
 use antumbra_reference::Reference;
 use antumbra_scene::Scene;
 use common::{compared, drawn, shadowed, technique, truth};
@@ -35,7 +35,7 @@ impl Judged {
         shadowed(&self.renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{} by {spec}: {e}", self.name))
     }
 
-    fn figures(&self, spec: &str) -> Figures {
+    fn metrics(&self, spec: &str) -> Metrics {
         compared(&self.picture(spec), &self.truth)
     }
 

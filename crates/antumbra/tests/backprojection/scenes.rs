@@ -9,7 +9,7 @@ fn four_layers_neither_leak_nor_darken() {
     // a map of 1024 texels (pcss 0.029, 64 maps over the light 0.020).
     for (spec, map) in [("fence", 1024), ("bumpy", 1024), ("grid", 2048), ("spheres:segments=32", 1024)] {
         let judged = Judged::builtin(spec, [144, 144], 64);
-        let f = judged.figures(&format!("backprojection:layers=4,map={map}"));
+        let f = judged.metrics(&format!("backprojection:layers=4,map={map}"));
         println!(
             "{spec}: average {:.4}, max {:.3}, leak {:.5} of {}, acne {:.5} of {}",
             f.average_error, f.max, f.leak, f.counts.umbra, f.acne, f.counts.lit
@@ -27,7 +27,7 @@ fn masked_foliage_casts_its_shadow() {
     // The leaves hide each other: what is behind the first layer counts.
     for (layers, bound) in [(1, 0.04), (2, 0.018), (4, 0.016)] {
         let spec = format!("backprojection:layers={layers},window=16,spacing=1");
-        let f = judged.figures(&spec);
+        let f = judged.metrics(&spec);
         println!("{spec}: average {:.4}, max {:.3}, leak {:.4}, acne {:.5}", f.average_error, f.max, f.leak, f.acne);
         assert!(f.average_error < bound && f.acne < 0.001, "{spec}: {f:?}");
         assert!(layers == 1 || f.leak < 0.012, "{spec}: {f:?}");

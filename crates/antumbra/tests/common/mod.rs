@@ -5,7 +5,7 @@ pub mod closed_form;
 
 use antumbra::scene::SceneRenderer;
 use antumbra::{AdapterChoice, Error, Gpu, Shadows, Spec};
-use antumbra_metrics::{Figures, Image, figures};
+use antumbra_metrics::{Image, Metrics, metrics};
 use antumbra_reference::{Reference, Settings, trace};
 use antumbra_scene::{Camera, Instance, Material, Mesh, RectLight, Scene};
 use glam::{Affine3A, Vec2, Vec3};
@@ -76,9 +76,9 @@ pub fn truth(scene: &Scene, size: [u32; 2], light_samples: u32) -> Reference {
 }
 
 /// How far a visibility is from the truth.
-pub fn compared(visibility: &[f32], truth: &Reference) -> Figures {
+pub fn compared(visibility: &[f32], truth: &Reference) -> Metrics {
     let image = |data| Image::new(truth.width, truth.height, data).expect("of the truth's size");
-    figures(image(visibility), image(&truth.visibility), &truth.valid).unwrap_or_else(|e| panic!("{e}"))
+    metrics(image(visibility), image(&truth.visibility), &truth.valid).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// A built-in scene.

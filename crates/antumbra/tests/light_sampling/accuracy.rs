@@ -2,8 +2,8 @@
 //! texels of maps from many points meet an edge at many places of it, which leaves little of the raster in the sum.
 
 use crate::common::{builtin, camera, compared, cuboid, ground, light, scene, technique, truth};
-use crate::{SIZE, figure, fresh, hovering, picture, seen};
-use antumbra_metrics::Figures;
+use crate::{SIZE, fresh, hovering, picture, seen, stat};
+use antumbra_metrics::Metrics;
 use antumbra_reference::Reference;
 use antumbra_scene::Scene;
 use glam::Vec2;
@@ -77,18 +77,18 @@ fn a_refined_light_is_about_as_good_as_one_with_128_maps() {
         let uniform = compared(&fresh(&renderer, "uniform-sampling:map=256,samples=128"), &truth).average_error;
         let mut adaptive = technique("adaptive-sampling:map=256");
         let error = compared(&picture(&renderer, &mut adaptive), &truth).average_error;
-        let maps = figure(&adaptive, "maps");
+        let maps = stat(&adaptive, "maps");
         println!("{spec}: error {error:.4} by {maps} maps, {uniform:.4} by 128 of fixed places");
         assert!(error < uniform + 0.01, "{spec}: error {error} by {maps} maps, {uniform} by 128 of fixed places");
     }
 }
 
-/// Figures and number of maps of a light of `size`.
-fn refined(size: Vec2, settings: &str) -> (Figures, u32) {
+/// Metrics and number of maps of a light of `size`.
+fn refined(size: Vec2, settings: &str) -> (Metrics, u32) {
     let scene = hovering(size);
     let mut adaptive = technique(&format!("adaptive-sampling:map=256{settings}"));
     let found = picture(&seen(&scene), &mut adaptive);
-    (compared(&found, &truth(&scene, SIZE, 1024)), figure(&adaptive, "maps"))
+    (compared(&found, &truth(&scene, SIZE, 1024)), stat(&adaptive, "maps"))
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn a_point_takes_one_map() {
     for settings in ["", ",filter=pcf", ",criterion=relative,filter=pcf"] {
         let mut adaptive = technique(&format!("adaptive-sampling:map=512{settings}"));
         let found = picture(&renderer, &mut adaptive);
-        assert_eq!(figure(&adaptive, "maps"), 1, "{settings}");
+        assert_eq!(stat(&adaptive, "maps"), 1, "{settings}");
         // A pixel whose middle is within a texel of the shadow's edge may be wrong.
         let wrong = found.iter().zip(&truth.visibility).filter(|(a, b)| (*a - *b).abs() > 0.01).count();
         let figures = compared(&found, &truth);

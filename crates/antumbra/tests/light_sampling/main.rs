@@ -35,7 +35,7 @@ fn fresh(renderer: &SceneRenderer, spec: &str) -> Vec<f32> {
 }
 
 /// A figure of the last frame.
-fn figure(shadows: &Shadows, name: &str) -> u32 {
+fn stat(shadows: &Shadows, name: &str) -> u32 {
     let figures = block_on(shadows.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
     let found = figures.iter().find(|(n, _)| *n == name);
     found.unwrap_or_else(|| panic!("no `{name}` among {figures:?}")).1 as u32

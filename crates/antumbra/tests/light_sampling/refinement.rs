@@ -1,10 +1,10 @@
 //! Where maps are spent: within the budget, at thin casters too, and by what the camera or the light sees.
 
 use crate::common::{camera, compared, cuboid, drawn, gpu, ground, light, scene, submit, technique, truth};
-use crate::{SIZE, figure, hovering, picture, seen};
+use crate::{SIZE, hovering, picture, seen, stat};
 use antumbra::View;
 use antumbra::scene::SceneRenderer;
-use antumbra_metrics::Figures;
+use antumbra_metrics::Metrics;
 use antumbra_reference::Reference;
 use glam::Vec2;
 
@@ -16,7 +16,7 @@ fn a_budget_of_maps_is_kept_and_spent_once() {
         for budget in [4, 5, 8, 20, 63] {
             let mut adaptive = technique(&format!("adaptive-sampling:tolerance=0,map=128,maps={budget}"));
             let found = picture(&renderer, &mut adaptive);
-            let (maps, drawn) = (figure(&adaptive, "maps"), figure(&adaptive, "maps drawn"));
+            let (maps, drawn) = (stat(&adaptive, "maps"), stat(&adaptive, "maps drawn"));
             let error = compared(&found, &truth).average_error;
             println!("light of {size} m: {maps} maps of {budget}, {drawn} drawn, error {error:.4}");
             assert!(found.iter().all(|v| (0.0..=1.0).contains(v)), "{size}, {budget} maps: beyond [0, 1]");
@@ -30,11 +30,11 @@ fn a_budget_of_maps_is_kept_and_spent_once() {
     }
 }
 
-/// Figures and number of maps.
-fn spent(renderer: &SceneRenderer, truth: &Reference, settings: &str) -> (Figures, u32) {
+/// Metrics and number of maps.
+fn spent(renderer: &SceneRenderer, truth: &Reference, settings: &str) -> (Metrics, u32) {
     let mut adaptive = technique(&format!("adaptive-sampling:map=256,{settings}"));
     let found = picture(renderer, &mut adaptive);
-    (compared(&found, truth), figure(&adaptive, "maps"))
+    (compared(&found, truth), stat(&adaptive, "maps"))
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn far_away_shadows_take_fewer_maps_unless_the_light_s_view_decides() {
             submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{e}"));
             let mut adaptive = technique(&format!("adaptive-sampling:{settings}"));
             picture(&renderer, &mut adaptive);
-            figure(&adaptive, "maps")
+            stat(&adaptive, "maps")
         })
     };
     for settings in ["tolerance=0.03", "criterion=relative", "criterion=absolute,gamma=0.1"] {

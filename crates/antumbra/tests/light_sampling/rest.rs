@@ -1,7 +1,7 @@
 //! What may be kept from frame to frame while casters rest.
 
 use crate::common::{camera, cuboid, gpu, submit, technique};
-use crate::{SIZE, assert_same, figure, fresh, hovering, picture, seen};
+use crate::{SIZE, assert_same, fresh, hovering, picture, seen, stat};
 use antumbra::View;
 use antumbra::scene::{SceneRenderer, upload};
 use antumbra_scene::Camera;
@@ -41,7 +41,7 @@ fn maps_of_resting_casters_are_drawn_once() {
         let mut frame = |renderer: &SceneRenderer, what: &str| {
             let found = picture(renderer, &mut kept);
             assert_same(&found, &fresh(renderer, &spec), &format!("{settings}: {what}, a used instance and a new one"));
-            let (maps, drawn) = (figure(&kept, "maps"), figure(&kept, "maps drawn"));
+            let (maps, drawn) = (stat(&kept, "maps"), stat(&kept, "maps drawn"));
             println!("{settings}: {what}: {maps} maps, {drawn} drawn");
             (found, maps, drawn)
         };
@@ -75,7 +75,7 @@ fn fixed_samples_of_resting_casters_are_drawn_once() {
         let mut kept = technique(&spec);
         let mut frame = |renderer: &SceneRenderer, what: &str| {
             let found = picture(renderer, &mut kept);
-            let is_drawn = figure(&kept, "maps drawn") > 0;
+            let is_drawn = stat(&kept, "maps drawn") > 0;
             assert_same(&found, &fresh(renderer, &spec), &format!("{way}: {what}, a used instance and a new one"));
             is_drawn
         };

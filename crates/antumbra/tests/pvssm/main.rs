@@ -5,7 +5,7 @@
 mod common;
 
 use antumbra::Shadows;
-use antumbra_metrics::Figures;
+use antumbra_metrics::Metrics;
 use antumbra_reference::{Reference, Settings, trace};
 use antumbra_scene::Scene;
 use common::{builtin, compared, drawn, gpu, shadowed, technique};
@@ -27,7 +27,7 @@ fn truth(scene: &Scene, light_samples: u32) -> Reference {
 }
 
 /// The errors of techniques against the truth, in their order.
-fn judged(scene: &Scene, specs: &[&str], light_samples: u32) -> Vec<Figures> {
+fn judged(scene: &Scene, specs: &[&str], light_samples: u32) -> Vec<Metrics> {
     let (renderer, truth) = (drawn(scene, SIZE), truth(scene, light_samples));
     let judge = |spec: &&str| {
         let visibility =

@@ -1,4 +1,4 @@
-//! The figures themselves.
+//! The metrics themselves.
 
 use serde::{Deserialize, Serialize};
 
@@ -15,7 +15,7 @@ pub const LIT_ABOVE: f32 = 0.999;
 /// How far an image is from the truth. Every figure but `ssim` is 0 at best and 1 at worst. A mean over a class of
 /// pixels that the image does not have is 0: `counts` says so.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Figures {
+pub struct Metrics {
     /// Mean |error| over shadow and penumbra, the valid pixels whose truth is under 0.999 [Atty 2006, section 5.2.1].
     pub average_error: f64,
     /// Root of the mean squared error over all valid pixels.
@@ -53,22 +53,22 @@ pub struct Counts {
     pub lit: u64,
 }
 
-/// [`Figures`] without those that judge by the eye: a fraction of the time, for changing images.
+/// [`Metrics`] without those that judge by the eye: a fraction of the time, for changing images.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ErrorFigures {
-    /// As in [`Figures`].
+pub struct ErrorMetrics {
+    /// As in [`Metrics`].
     pub average_error: f64,
-    /// As in [`Figures`].
+    /// As in [`Metrics`].
     pub rmse: f64,
-    /// As in [`Figures`].
+    /// As in [`Metrics`].
     pub p99: f64,
-    /// As in [`Figures`].
+    /// As in [`Metrics`].
     pub max: f64,
-    /// As in [`Figures`].
+    /// As in [`Metrics`].
     pub leak: f64,
-    /// As in [`Figures`].
+    /// As in [`Metrics`].
     pub acne: f64,
-    /// As in [`Figures`].
+    /// As in [`Metrics`].
     pub counts: Counts,
 }
 
@@ -76,19 +76,19 @@ pub struct ErrorFigures {
 ///
 /// Values may stray from [0, 1] by a thousandth (rounding) and are clamped. The values of invalid pixels do not matter.
 #[cfg(feature = "perceptual")]
-pub fn figures(test: Image, truth: Image, valid: &[bool]) -> Result<Figures, MetricsError> {
+pub fn metrics(test: Image, truth: Image, valid: &[bool]) -> Result<Metrics, MetricsError> {
     let pair = Pair::new(test, truth, valid)?;
-    let ErrorFigures { average_error, rmse, p99, max, leak, acne, counts } = errors_of(&pair, valid);
+    let ErrorMetrics { average_error, rmse, p99, max, leak, acne, counts } = errors_of(&pair, valid);
     let (ssim, flip) = (perceptual::ssim(&pair), perceptual::flip(&pair, valid));
-    Ok(Figures { average_error, rmse, p99, max, leak, acne, ssim, flip, counts })
+    Ok(Metrics { average_error, rmse, p99, max, leak, acne, ssim, flip, counts })
 }
 
-/// The same without the figures that judge by the eye.
-pub fn error_figures(test: Image, truth: Image, valid: &[bool]) -> Result<ErrorFigures, MetricsError> {
+/// The same without the metrics that judge by the eye.
+pub fn error_metrics(test: Image, truth: Image, valid: &[bool]) -> Result<ErrorMetrics, MetricsError> {
     Ok(errors_of(&Pair::new(test, truth, valid)?, valid))
 }
 
-fn errors_of(pair: &Pair, valid: &[bool]) -> ErrorFigures {
+fn errors_of(pair: &Pair, valid: &[bool]) -> ErrorMetrics {
     let mut sums = Sums::default();
     let mut errors = Vec::with_capacity(pair.truth.len());
     for ((&test, &truth), _) in pair.test.iter().zip(&pair.truth).zip(valid).filter(|(_, valid)| **valid) {
@@ -96,7 +96,7 @@ fn errors_of(pair: &Pair, valid: &[bool]) -> ErrorFigures {
         errors.push((f64::from(test) - f64::from(truth)).abs());
     }
     let counts = sums.counts;
-    ErrorFigures {
+    ErrorMetrics {
         average_error: mean(sums.shadow_error, counts.shadowed),
         rmse: mean(sums.squared_error, counts.valid).sqrt(),
         max: errors.iter().copied().fold(0.0, f64::max),

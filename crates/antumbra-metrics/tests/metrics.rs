@@ -1,16 +1,16 @@
 //! Every figure on cases small enough to compute by hand, and the comparison made to fail.
 
-use antumbra_metrics::{Figures, Image, MetricsError, Role, figures};
+use antumbra_metrics::{Image, Metrics, MetricsError, Role, metrics};
 
 const W: u32 = 48;
 const H: u32 = 32;
 
-fn compare(test: &[f32], truth: &[f32], size: (u32, u32)) -> Figures {
+fn compare(test: &[f32], truth: &[f32], size: (u32, u32)) -> Metrics {
     masked(test, truth, size, &vec![true; truth.len()])
 }
 
-fn masked(test: &[f32], truth: &[f32], (w, h): (u32, u32), valid: &[bool]) -> Figures {
-    figures(Image::new(w, h, test).unwrap(), Image::new(w, h, truth).unwrap(), valid).unwrap()
+fn masked(test: &[f32], truth: &[f32], (w, h): (u32, u32), valid: &[bool]) -> Metrics {
+    metrics(Image::new(w, h, test).unwrap(), Image::new(w, h, truth).unwrap(), valid).unwrap()
 }
 
 fn close(a: f64, b: f64) {
@@ -28,7 +28,7 @@ fn shadow(shift: f32) -> Vec<f32> {
 }
 
 #[test]
-fn figures_by_hand() {
+fn metrics_by_hand() {
     // lit, lit, umbra, penumbra; errors 0, -0.25, +0.5, -0.25
     let f = compare(&[1.0, 0.75, 0.5, 0.25], &[1.0, 1.0, 0.0, 0.5], (2, 2));
     close(f.average_error, (0.5 + 0.25) / 2.0);
@@ -100,7 +100,7 @@ fn a_flipped_image_is_seen() {
 #[test]
 fn a_swapped_size_is_refused() {
     let (test, truth) = (shadow(0.0), shadow(0.0));
-    let swapped = figures(Image::new(H, W, &test).unwrap(), Image::new(W, H, &truth).unwrap(), &[true; 1536]);
+    let swapped = metrics(Image::new(H, W, &test).unwrap(), Image::new(W, H, &truth).unwrap(), &[true; 1536]);
     assert_eq!(swapped, Err(MetricsError::SizeMismatch { test: (H, W), truth: (W, H) }));
 }
 
@@ -137,13 +137,13 @@ fn bad_input_is_named() {
     let good = [0.5_f32; 4];
     for value in [f32::NAN, f32::INFINITY, -0.1, 1.01] {
         let bad = [0.5, 0.5, 0.5, value];
-        let tested = figures(image(&bad), image(&good), &[true; 4]).unwrap_err();
+        let tested = metrics(image(&bad), image(&good), &[true; 4]).unwrap_err();
         assert!(matches!(tested, MetricsError::Value { role: Role::Test, x: 1, y: 1, .. }), "{tested}");
-        let truth = figures(image(&good), image(&bad), &[true; 4]).unwrap_err();
+        let truth = metrics(image(&good), image(&bad), &[true; 4]).unwrap_err();
         assert!(matches!(truth, MetricsError::Value { role: Role::Truth, x: 1, y: 1, .. }), "{truth}");
     }
-    assert_eq!(figures(image(&good), image(&good), &[true; 3]), Err(MetricsError::MaskLength { len: 3, expected: 4 }));
-    assert_eq!(figures(image(&good), image(&good), &[false; 4]), Err(MetricsError::NothingValid));
+    assert_eq!(metrics(image(&good), image(&good), &[true; 3]), Err(MetricsError::MaskLength { len: 3, expected: 4 }));
+    assert_eq!(metrics(image(&good), image(&good), &[false; 4]), Err(MetricsError::NothingValid));
     assert!(matches!(Image::new(0, 2, &[]), Err(MetricsError::Empty { .. })));
     assert!(matches!(Image::new(2, 2, &good[..3]), Err(MetricsError::Length { len: 3, .. })));
 }
@@ -155,7 +155,7 @@ fn rounding_outside_of_the_range_is_forgiven() {
 }
 
 #[test]
-fn figures_survive_json() {
+fn metrics_survive_json() {
     let f = compare(&shadow(1.0), &shadow(0.0), (W, H));
     let json = serde_json::to_string(&f).unwrap();
     let back: serde_json::Value = serde_json::from_str(&json).unwrap();
