@@ -1,5 +1,6 @@
 //! The perspective camera.
 
+use crate::axes::axes;
 use glam::{Mat4, Vec3};
 
 /// A perspective camera; lengths in metres, in world space.
@@ -9,7 +10,7 @@ pub struct Camera {
     pub eye: Vec3,
     /// The point at the centre of the image.
     pub target: Vec3,
-    /// Up direction, not parallel to the view direction.
+    /// Up direction. Where it is parallel to the view direction, -Z takes its place.
     pub up: Vec3,
     /// Vertical field of view in degrees, in (0, 180).
     pub fov_y_deg: f32,
@@ -22,9 +23,7 @@ pub struct Camera {
 impl Camera {
     /// Unit vectors (right, up, forward).
     pub fn basis(&self) -> (Vec3, Vec3, Vec3) {
-        let forward = (self.target - self.eye).normalize();
-        let right = forward.cross(self.up).normalize();
-        (right, right.cross(forward), forward)
+        axes(self.target - self.eye, self.up)
     }
 
     /// World to view space: right-handed, looking along -Z.

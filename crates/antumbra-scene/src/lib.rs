@@ -4,6 +4,7 @@
 //! `default-features = false` nothing here touches a file either.
 #![deny(missing_docs)]
 
+mod axes;
 mod bounds;
 pub mod builtin;
 mod camera;

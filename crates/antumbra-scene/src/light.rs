@@ -1,5 +1,6 @@
 //! The one-sided rectangular light.
 
+use crate::axes::axes;
 use glam::{Vec2, Vec3};
 
 /// A one-sided rectangular light. A zero height makes a line, zero width and height a point.
@@ -9,7 +10,8 @@ pub struct RectLight {
     pub center: Vec3,
     /// A point that the light faces; the normal is `normalize(target - center)`.
     pub target: Vec3,
-    /// Fixes the rotation about the normal: the first edge is `normalize(cross(forward, up))`.
+    /// Fixes the rotation about the normal: the first edge is `normalize(cross(forward, up))`. Where it is parallel to
+    /// the normal, -Z takes its place.
     pub up: Vec3,
     /// Edge lengths in metres, each >= 0.
     pub size: Vec2,
@@ -20,9 +22,7 @@ pub struct RectLight {
 impl RectLight {
     /// Unit vectors (first edge, second edge, normal). The normal points away from the light's front.
     pub fn basis(&self) -> (Vec3, Vec3, Vec3) {
-        let forward = (self.target - self.center).normalize();
-        let right = forward.cross(self.up).normalize();
-        (right, right.cross(forward), forward)
+        axes(self.target - self.center, self.up)
     }
 
     /// The two edge vectors, in metres.

@@ -48,7 +48,8 @@ impl LoadedScene {
         let half = &small.halves[0];
         gpu.submit(|recorder| {
             small.geometry.record(recorder, &loaded.casters, &half.frame.view)?;
-            shade(recorder, &half.frame, &small.geometry, &half.image)
+            let frame = half.frame.bind(recorder)?;
+            shade(recorder, &frame, &small.geometry, &half.image)
         })?;
         Ok(loaded)
     }

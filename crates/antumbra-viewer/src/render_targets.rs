@@ -65,10 +65,10 @@ impl RenderTargets {
     }
 
     /// Moves camera, light and occluders.
-    pub fn update(&mut self, gpu: &Gpu, loaded: &LoadedScene, view: View, light: RectLight, frustum: ShadowFrustum) {
+    pub fn update(&mut self, loaded: &LoadedScene, view: View, light: RectLight, frustum: ShadowFrustum) {
         for half in &mut self.halves {
             half.frame.casters = loaded.casters();
-            half.frame.update(gpu, view, light, frustum);
+            half.frame.update(view, light, frustum);
         }
     }
 
@@ -124,7 +124,8 @@ impl Half {
         match show {
             Show::Image => {
                 let mut recorder = Recorder::new(gpu, &mut encoder, &mut self.resources);
-                shade(&mut recorder, &self.frame, geometry, &self.image)?;
+                let frame = self.frame.bind(&mut recorder)?;
+                shade(&mut recorder, &frame, geometry, &self.image)?;
             }
             _ => pass.record(gpu, &mut encoder, show, &self.visibility, truth, &self.image),
         }

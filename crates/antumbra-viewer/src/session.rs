@@ -236,7 +236,7 @@ impl Session {
         let (Some(loaded), Some(targets)) = (&mut self.loaded, &mut self.targets) else { return Ok(()) };
         let gpu = &self.gpu;
         let frustum = loaded.frustum(view, view_state.light, waker);
-        targets.update(gpu, loaded, view, view_state.light, frustum);
+        targets.update(loaded, view, view_state.light, frustum);
         targets.record_geometry(gpu, &loaded.casters(), &view)?;
         let count = if view_state.compare == Compare::One { 1 } else { 2 };
         for (i, drawn) in targets.halves.iter_mut().enumerate().take(count) {

@@ -122,7 +122,7 @@ pub async fn render(technique: &str) -> Result<(Vec<f32>, Vec<u8>), Box<dyn Erro
     // Typed settings where the technique is known: `Shadows::new(Pcss::make(&gpu, PcssSettings::default())?)`.
     let mut shadows = Shadows::from_spec(&gpu, &technique.parse()?)?;
     // ---- each frame ----
-    frame.update(&gpu, view(), light(), ShadowFrustum::around(&light(), &bounds));
+    frame.update(view(), light(), ShadowFrustum::around(&light(), &bounds));
     shadows.record(&gpu, &mut encoder, &frame)?;
     // ---- that was all ----
 

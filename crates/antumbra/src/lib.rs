@@ -28,7 +28,7 @@
 //! let mut shadows = Shadows::new(Pcss::make(&gpu, PcssSettings { map: 1024, ..Default::default() })?);
 //!
 //! // Each frame, between the depth prepass and the shading that reads the visibility.
-//! frame.update(&gpu, host.view, host.light, ShadowFrustum::around(&host.light, &casters.bounds()));
+//! frame.update(host.view, host.light, ShadowFrustum::around(&host.light, &casters.bounds()));
 //! shadows.record(&gpu, &mut encoder, &frame)?;
 //! # Ok(()) }
 //! ```

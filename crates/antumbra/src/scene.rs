@@ -42,7 +42,7 @@ impl SceneRenderer {
             visibility: &visibility.view,
         };
         let mut frame = Frame::new(gpu, &descriptor)?;
-        frame.update(gpu, view, scene.light, ShadowFrustum::fit(scene, &view));
+        frame.update(view, scene.light, ShadowFrustum::fit(scene, &view));
         Ok(SceneRenderer { geometry, frame, visibility, resources: Mutex::default() })
     }
 
@@ -61,7 +61,10 @@ impl SceneRenderer {
     /// Shades with the visibility texture and returns 8-bit sRGB RGBA, row 0 on top.
     pub async fn image(&self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
         let image = shading::image_texture(gpu, self.frame.size);
-        gpu.submit(|recorder| shading::shade(recorder, &self.frame, &self.geometry, &image))?;
+        gpu.submit(|recorder| {
+            let frame = self.frame.bind(recorder)?;
+            shading::shade(recorder, &frame, &self.geometry, &image)
+        })?;
         gpu.read_texture(&image).await
     }
 

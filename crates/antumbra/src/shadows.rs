@@ -50,7 +50,9 @@ impl<T: Technique + ?Sized> Shadows<T> {
         frame: &Frame,
         timer: Option<&Timer>,
     ) -> Result<(), Error> {
-        self.technique.record(frame, &mut Recorder::new(gpu, encoder, &mut self.resources).timed(timer))
+        let mut recorder = Recorder::new(gpu, encoder, &mut self.resources).timed(timer);
+        let frame = frame.bind(&mut recorder)?;
+        self.technique.record(&frame, &mut recorder)
     }
 
     /// GPU memory by the label of the pass that uses it.

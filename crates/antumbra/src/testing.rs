@@ -70,8 +70,9 @@ pub fn at_pixels(
     let output = storage_buffer(gpu, "output", bytes);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     renderer.record_geometry(gpu, &mut encoder, None).expect("draws");
-    let (frame, mut resources) = (&renderer.frame, Resources::default());
+    let mut resources = Resources::default();
     let mut recorder = Recorder::new(gpu, &mut encoder, &mut resources);
+    let frame = renderer.frame.bind(&mut recorder).unwrap_or_else(|e| panic!("{e}"));
     let set = [&frame.bindings()[..], bindings! { output: &output }, more];
     recorder.compute("pixels", &pipeline, &set, Work::Pixels(frame.size)).unwrap_or_else(|e| panic!("{e}"));
     drop(recorder);

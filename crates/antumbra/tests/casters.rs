@@ -238,7 +238,8 @@ fn culling_draws_what_the_frustum_holds_and_drops_nothing_of_it() {
     let (mut map, mut resources) = (None, Resources::default());
     common::submit(|encoder| {
         let mut recorder = Recorder::new(gpu(), encoder, &mut resources);
-        map = Some(DepthMap::of_light(&mut recorder, frame, size)?);
+        let frame = frame.bind(&mut recorder)?;
+        map = Some(DepthMap::of_light(&mut recorder, &frame, size)?);
         Ok(())
     })
     .expect("draws");

@@ -60,7 +60,8 @@ fn draw(
     let mut maps = None;
     common::submit(|encoder| {
         let mut recorder = Recorder::new(gpu(), encoder, resources);
-        maps = Some(DepthLayers::of_light(&mut recorder, &renderer.frame, size, count, apart)?);
+        let frame = renderer.frame.bind(&mut recorder)?;
+        maps = Some(DepthLayers::of_light(&mut recorder, &frame, size, count, apart)?);
         Ok(())
     })?;
     Ok(maps.expect("recorded"))
@@ -92,7 +93,8 @@ fn the_first_layer_is_the_depth_map_and_depths_descend() {
         let (mut map, mut resources) = (None, Resources::default());
         common::submit(|encoder| {
             let mut recorder = Recorder::new(gpu(), encoder, &mut resources);
-            map = Some(DepthMap::of_light(&mut recorder, &renderer.frame, SIZE)?);
+            let frame = renderer.frame.bind(&mut recorder)?;
+            map = Some(DepthMap::of_light(&mut recorder, &frame, SIZE)?);
             Ok(())
         })
         .expect("draws");

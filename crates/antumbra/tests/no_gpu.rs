@@ -48,7 +48,7 @@ fn frame() -> Frame {
         visibility: &visibility.view,
     };
     let mut frame = Frame::new(&GPU, &descriptor).expect("textures go together");
-    frame.update(&GPU, view, scene.light, ShadowFrustum::fit(&scene, &view));
+    frame.update(view, scene.light, ShadowFrustum::fit(&scene, &view));
     frame
 }
 

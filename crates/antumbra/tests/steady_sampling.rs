@@ -56,7 +56,7 @@ fn shots(spec: &str) -> Vec<Shot> {
     let view = renderer.frame.view;
     // One frustum for all frames: what moves is in the scene.
     let frustum = ShadowFrustum::of_degrees(40.0, 0.01, [3.0, 4.5]);
-    renderer.frame.update(gpu(), view, first.light, frustum);
+    renderer.frame.update(view, first.light, frustum);
     let shot = |frame| {
         let scene = scene_of(frame);
         renderer.frame.casters = Arc::new(antumbra::scene::upload(gpu(), &scene).unwrap());

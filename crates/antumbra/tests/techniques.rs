@@ -84,6 +84,47 @@ fn a_technique_follows_a_change_of_picture_size_and_casters() {
     }
 }
 
+/// Shadows of two lights that one instance records into one encoder, and those of the same frame before and after an
+/// update.
+#[test]
+fn one_instance_serves_several_lights_in_one_encoder() {
+    let scene = common::builtin("fence:slats=9");
+    let mut other = scene.clone();
+    other.light.center += glam::Vec3::new(-1.5, 0.5, 0.3);
+    other.light.size *= 0.4;
+    let size = [48, 40];
+    let [mut first, second] = [&scene, &other].map(|scene| drawn(scene, size));
+    let read = |renderer: &SceneRenderer| pollster::block_on(renderer.read_visibility(common::gpu())).expect("reads");
+    for info in TECHNIQUES {
+        let spec = quick(info);
+        let expected = [&first, &second]
+            .map(|renderer| shadowed(renderer, &mut technique(&spec)).unwrap_or_else(|e| panic!("{spec}: {e}")));
+        let mut shared = technique(&spec);
+        common::submit(|encoder| {
+            shared.record(common::gpu(), encoder, &first.frame)?;
+            shared.record(common::gpu(), encoder, &second.frame)
+        })
+        .unwrap_or_else(|e| panic!("{spec}: {e}"));
+        for (name, renderer, expected) in [("first", &first, &expected[0]), ("second", &second, &expected[1])] {
+            assert!(read(renderer) == *expected, "{spec}: the {name} light of an encoder has other shadows than alone");
+        }
+        // The first frame again, updated to the second light before the encoder is submitted.
+        let before = first.frame.clone();
+        common::submit(|encoder| {
+            shared.record(common::gpu(), encoder, &first.frame)?;
+            let [from, to] = [&first, &second].map(|r| r.visibility.texture.as_image_copy());
+            encoder.copy_texture_to_texture(from, to, first.visibility.texture.size());
+            first.frame.update(before.view, other.light, second.frame.frustum);
+            shared.record(common::gpu(), encoder, &first.frame)
+        })
+        .unwrap_or_else(|e| panic!("{spec}: {e}"));
+        let [after_update, before_update] = [&first, &second].map(read);
+        first.frame.update(before.view, before.light, before.frustum);
+        assert!(before_update == expected[0], "{spec}: an update changes what was recorded before");
+        assert!(after_update == expected[1], "{spec}: an update before the submission does not count");
+    }
+}
+
 #[test]
 fn every_technique_says_what_it_is_and_what_memory_it_takes() {
     let renderer = drawn(&common::builtin("square"), [32, 32]);

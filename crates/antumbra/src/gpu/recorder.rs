@@ -77,7 +77,7 @@ impl<'a> Recorder<'a> {
         buffer
     }
 
-    /// A uniform buffer of this value. A frame may ask for several of one label: each has a buffer of its own.
+    /// A uniform buffer of this value, which stays until the GPU has done what is recorded.
     pub fn uniform<T: HostStruct>(&mut self, label: &'static str, value: &T) -> wgpu::Buffer {
         self.resources.uniform(self.gpu, label, value)
     }

@@ -9,6 +9,7 @@ use super::readback::Readback;
 use super::texture::{Texture, TextureDescription};
 use crate::error::Error;
 use std::num::NonZero;
+use std::sync::{Arc, Weak};
 use wgpu::util::DeviceExt;
 
 /// GPU memory of one pass.
@@ -85,10 +86,11 @@ enum Content {
         is_clear: bool,
         debug: Option<(&'static str, DebugLayout)>,
     },
-    /// A buffer with the bytes, or the key to them, that it was last filled with.
+    /// A buffer with the bytes, or the key to them, that it is filled with, and the recordings that read it.
     Filled {
         buffer: wgpu::Buffer,
         bytes: Vec<u8>,
+        readers: Vec<Weak<()>>,
     },
     Readback(Readback),
     Points(Vec<glam::Vec2>),
@@ -129,6 +131,8 @@ pub struct Resources {
     scratch: Vec<u8>,
     captures: bool,
     made: u64,
+    /// Lives until the GPU has done what the present frame records, or its encoder is dropped.
+    recording: Arc<()>,
 }
 
 impl Resources {
@@ -179,6 +183,9 @@ impl Resources {
     }
 
     pub(super) fn begin_frame(&mut self, encoder: &mut wgpu::CommandEncoder) {
+        self.recording = Arc::default();
+        let recording = self.recording.clone();
+        encoder.on_submitted_work_done(move || drop(recording));
         for entry in &mut self.entries {
             if let Content::Buffer { buffer, cleared, is_clear, .. } = &mut entry.content {
                 *is_clear = *cleared > 0 && entry.asked == self.frame;
@@ -201,6 +208,8 @@ impl Resources {
             self.entries.retain(|e| e.asked >= oldest);
         }
         self.groups.retain_since(oldest);
+        // The encoder's is the last one.
+        self.recording = Arc::default();
     }
 
     /// The entry of this label that the present frame has not asked for yet, if it fits.
@@ -278,28 +287,63 @@ impl Resources {
         (buffer.clone(), missing)
     }
 
+    /// A buffer of these bytes, which no frame changes before the GPU has read them: an encoder may record several
+    /// lights before it is submitted, and frames may be in flight.
     fn filled(&mut self, gpu: &Gpu, label: &'static str, usage: wgpu::BufferUsages) -> wgpu::Buffer {
         let contents = std::mem::take(&mut self.scratch);
-        let fits = |c: &Content| matches!(c, Content::Filled { bytes, .. } if bytes.len() == contents.len());
-        let buffer = match self.find(label, fits) {
-            Some(index) => {
-                let Content::Filled { buffer, bytes } = &mut self.entries[index].content else {
-                    unreachable!("found as a filled buffer")
-                };
-                if *bytes != contents {
-                    gpu.queue.write_buffer(buffer, 0, &contents);
-                    bytes.copy_from_slice(&contents);
-                }
-                buffer.clone()
-            }
-            None => {
-                let buffer = buffer_of(gpu, label, &contents, usage | wgpu::BufferUsages::COPY_DST);
-                self.add(label, Content::Filled { buffer: buffer.clone(), bytes: contents.clone() });
-                buffer
-            }
-        };
+        let buffer = self.same_filled(label, &contents).or_else(|| self.refilled(gpu, label, &contents));
+        let buffer = buffer.unwrap_or_else(|| {
+            let buffer = buffer_of(gpu, label, &contents, usage | wgpu::BufferUsages::COPY_DST);
+            self.add_filled(label, buffer, &contents)
+        });
         self.scratch = contents;
         buffer
+    }
+
+    /// The buffer of a label that is filled with these bytes, or whose contents have this key.
+    fn same_filled(&mut self, label: &'static str, wanted: &[u8]) -> Option<wgpu::Buffer> {
+        let is_same =
+            |e: &Entry| e.label == label && matches!(&e.content, Content::Filled { bytes, .. } if bytes == wanted);
+        let (before, after) = self.entries.split_at(self.cursor.min(self.entries.len()));
+        let position = after.iter().position(is_same).map(|i| i + before.len());
+        let index = position.or_else(|| before.iter().position(is_same))?;
+        Some(self.read_filled(index))
+    }
+
+    /// A buffer of a label that nothing reads any more, with other bytes of the same length.
+    fn refilled(&mut self, gpu: &Gpu, label: &'static str, contents: &[u8]) -> Option<wgpu::Buffer> {
+        let frame = self.frame;
+        let is_free = |e: &Entry| match &e.content {
+            Content::Filled { bytes, readers, .. } if e.label == label && e.asked < frame => {
+                bytes.len() == contents.len() && readers.iter().all(|r| r.strong_count() == 0)
+            }
+            _ => false,
+        };
+        let index = self.entries.iter().position(is_free)?;
+        if let Content::Filled { buffer, bytes, .. } = &mut self.entries[index].content {
+            gpu.queue.write_buffer(buffer, 0, contents);
+            bytes.copy_from_slice(contents);
+        }
+        Some(self.read_filled(index))
+    }
+
+    fn add_filled(&mut self, label: &'static str, buffer: wgpu::Buffer, bytes: &[u8]) -> wgpu::Buffer {
+        let index = self.add(label, Content::Filled { buffer, bytes: bytes.to_vec(), readers: Vec::new() });
+        self.read_filled(index)
+    }
+
+    /// Counts the present recording among the readers of a filled buffer.
+    fn read_filled(&mut self, index: usize) -> wgpu::Buffer {
+        let entry = &mut self.entries[index];
+        let first_time = entry.asked < self.frame;
+        entry.asked = self.frame;
+        self.cursor = index + 1;
+        let Content::Filled { buffer, readers, .. } = &mut entry.content else { unreachable!("a filled buffer") };
+        if first_time || readers.is_empty() {
+            readers.retain(|r| r.strong_count() > 0);
+            readers.push(Arc::downgrade(&self.recording));
+        }
+        buffer.clone()
     }
 
     pub(super) fn uniform<T: HostStruct>(&mut self, gpu: &Gpu, label: &'static str, value: &T) -> wgpu::Buffer {
@@ -336,28 +380,11 @@ impl Resources {
         key: &[u8],
         contents: impl FnOnce() -> Vec<u8>,
     ) -> wgpu::Buffer {
-        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
-        let new = |contents: &[u8]| buffer_of(gpu, label, contents, usage);
-        let Some(index) = self.find(label, |c| matches!(c, Content::Filled { .. })) else {
-            let buffer = new(&contents());
-            self.add(label, Content::Filled { buffer: buffer.clone(), bytes: key.to_vec() });
-            return buffer;
-        };
-        let Content::Filled { buffer, bytes } = &mut self.entries[index].content else {
-            unreachable!("found as a filled buffer")
-        };
-        if *bytes != key {
-            let contents = contents();
-            if contents.len() as u64 == buffer.size() {
-                gpu.queue.write_buffer(buffer, 0, &contents);
-            } else {
-                *buffer = new(&contents);
-                self.made += 1;
-            }
-            bytes.clear();
-            bytes.extend_from_slice(key);
-        }
-        buffer.clone()
+        self.same_filled(label, key).unwrap_or_else(|| {
+            let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+            let buffer = buffer_of(gpu, label, &contents(), usage);
+            self.add_filled(label, buffer, key)
+        })
     }
 
     pub(super) fn readback(&mut self, gpu: &Gpu, label: &'static str, size: u64) -> &Readback {

@@ -5,11 +5,11 @@ use super::frustum::ShadowFrustum;
 use crate::error::Error;
 use crate::gpu::bindings::Binding;
 use crate::gpu::device::Gpu;
-use crate::gpu::host_struct::HostStruct;
 use crate::gpu::recorder::Recorder;
 use crate::{binding_array, gpu_struct};
 use antumbra_scene::{Camera, RectLight};
 use glam::{DMat4, DVec4, Mat3, Mat4, UVec2, Vec2, Vec3};
+use std::ops::Deref;
 use std::sync::{Arc, Weak};
 
 /// The camera as matrices.
@@ -124,7 +124,8 @@ pub fn normal_error(format: wgpu::TextureFormat) -> f32 {
     }
 }
 
-/// The input of a frame on the GPU. Kept from frame to frame; [`Frame::update`] moves camera and light.
+/// The input of a frame. Kept from frame to frame; [`Frame::update`] moves camera and light.
+#[derive(Clone)]
 pub struct Frame {
     /// Camera.
     pub view: View,
@@ -142,14 +143,28 @@ pub struct Frame {
     depth: wgpu::TextureView,
     normals: wgpu::TextureView,
     visibility: wgpu::TextureView,
+}
+
+/// A frame with the buffer that shaders read it from, for the recording of one frame.
+#[derive(Clone)]
+pub struct BoundFrame {
+    frame: Frame,
     uniform: wgpu::Buffer,
+}
+
+impl Deref for BoundFrame {
+    type Target = Frame;
+
+    fn deref(&self) -> &Frame {
+        &self.frame
+    }
 }
 
 impl Frame {
     /// A frame with a frustum around all casters.
     pub fn new(gpu: &Gpu, descriptor: &FrameDescriptor) -> Result<Frame, Error> {
         let FrameDescriptor { view, light, casters, depth, normals, visibility } = *descriptor;
-        let frame = Frame {
+        Ok(Frame {
             size: descriptor.size(gpu)?,
             view,
             light,
@@ -159,70 +174,41 @@ impl Frame {
             depth: depth.clone(),
             normals: normals.clone(),
             visibility: visibility.clone(),
-            uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("frame"),
-                size: <FrameUniform as encase::ShaderType>::min_size().get(),
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            }),
-        };
-        frame.write(gpu);
-        Ok(frame)
-    }
-
-    /// Moves camera and light. The new values count for all work submitted after this call.
-    pub fn update(&mut self, gpu: &Gpu, view: View, light: RectLight, frustum: ShadowFrustum) {
-        (self.view, self.light, self.frustum) = (view, light, frustum);
-        self.write(gpu);
-    }
-
-    /// The same frame with a point at the light's centre, for techniques of hard shadows that share the code of soft
-    /// ones.
-    pub(crate) fn with_point_light(&self, recorder: &mut Recorder) -> Frame {
-        self.changed(recorder, |frame| frame.light.size = Vec2::ZERO)
-    }
-
-    /// The same frame seen by another view, with its depth and normals.
-    pub(crate) fn with_view(
-        &self,
-        recorder: &mut Recorder,
-        view: View,
-        [depth, normals]: [&wgpu::TextureView; 2],
-    ) -> Frame {
-        self.changed(recorder, |frame| {
-            (frame.view, frame.depth, frame.normals) = (view, depth.clone(), normals.clone());
         })
     }
 
-    /// A copy with a uniform of its own.
-    fn changed(&self, recorder: &mut Recorder, change: impl FnOnce(&mut Frame)) -> Frame {
-        let mut frame = Frame {
-            casters: self.casters.clone(),
-            depth: self.depth.clone(),
-            normals: self.normals.clone(),
-            visibility: self.visibility.clone(),
-            uniform: self.uniform.clone(),
-            ..*self
-        };
-        change(&mut frame);
-        frame.uniform = recorder.uniform("changed frame", &frame.uniform_value());
-        frame
+    /// Moves camera and light. The new values count for what is recorded after this call.
+    pub fn update(&mut self, view: View, light: RectLight, frustum: ShadowFrustum) {
+        (self.view, self.light, self.frustum) = (view, light, frustum);
     }
 
-    /// The resources of `shaders/frame.wesl`.
-    pub fn bindings(&self) -> [Binding<'_>; 4] {
-        binding_array! {
-            frame: &self.uniform,
-            geometry_depth: &self.depth,
-            geometry_normal: &self.normals,
-            visibility: &self.visibility,
+    /// The frame as shaders read it, in a buffer of the recorder's pool.
+    ///
+    /// # Errors
+    /// If view, light or frustum hold what no shadow follows from: NaN, an infinity, a light without a direction.
+    pub fn bind(&self, recorder: &mut Recorder) -> Result<BoundFrame, Error> {
+        self.check()?;
+        Ok(BoundFrame { uniform: recorder.uniform("frame", &self.uniform_value()), frame: self.clone() })
+    }
+
+    fn check(&self) -> Result<(), Error> {
+        let Frame { view, light, frustum, .. } = self;
+        let inverse = (view.clip_from_view.as_dmat4() * view.view_from_world.as_dmat4()).inverse();
+        let checks = [
+            (inverse.is_finite(), "`view` cannot be inverted: its matrices hold NaN, or an axis of length 0"),
+            (light.center.is_finite() && light.target.is_finite(), "`light.center` or `light.target` is not finite"),
+            (light.center != light.target, "`light.target` is `light.center`: the light faces nowhere"),
+            (light.size.is_finite() && light.size.min_element() >= 0.0, "`light.size` must be finite and not below 0"),
+            (
+                frustum.tan_half.is_finite() && frustum.tan_half.min_element() > 0.0,
+                "`frustum.tan_half` must be finite and above 0",
+            ),
+            (frustum.near.is_finite() && frustum.near > 0.0, "`frustum.near` must be finite and above 0"),
+        ];
+        match checks.into_iter().find(|(fits, _)| !fits) {
+            Some((_, message)) => Err(Error::Frame(message.to_owned())),
+            None => Ok(()),
         }
-    }
-
-    fn write(&self, gpu: &Gpu) {
-        let mut bytes = Vec::new();
-        self.uniform_value().write_uniform(&mut bytes);
-        gpu.queue.write_buffer(&self.uniform, 0, &bytes);
     }
 
     fn uniform_value(&self) -> FrameUniform {
@@ -257,6 +243,37 @@ impl Frame {
             DVec4::new(0.0, 0.0, f64::from(f.near), 0.0),
         );
         (clip_from_light * light_from_world(&self.light)).as_mat4()
+    }
+}
+
+impl BoundFrame {
+    /// The same frame with a point at the light's centre, for techniques of hard shadows that share the code of soft
+    /// ones.
+    pub(crate) fn with_point_light(&self, recorder: &mut Recorder) -> BoundFrame {
+        let mut frame = self.frame.clone();
+        frame.light.size = Vec2::ZERO;
+        BoundFrame { uniform: recorder.uniform("changed frame", &frame.uniform_value()), frame }
+    }
+
+    /// The same frame seen by another view, with its depth and normals.
+    pub(crate) fn with_view(
+        &self,
+        recorder: &mut Recorder,
+        view: View,
+        [depth, normals]: [&wgpu::TextureView; 2],
+    ) -> BoundFrame {
+        let frame = Frame { view, depth: depth.clone(), normals: normals.clone(), ..self.frame.clone() };
+        BoundFrame { uniform: recorder.uniform("changed frame", &frame.uniform_value()), frame }
+    }
+
+    /// The resources of `shaders/frame.wesl`.
+    pub fn bindings(&self) -> [Binding<'_>; 4] {
+        binding_array! {
+            frame: &self.uniform,
+            geometry_depth: &self.depth,
+            geometry_normal: &self.normals,
+            visibility: &self.visibility,
+        }
     }
 }
 

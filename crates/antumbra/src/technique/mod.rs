@@ -6,7 +6,7 @@ use crate::error::{Error, SpecError};
 use crate::gpu::device::Gpu;
 use crate::gpu::limits::Needs;
 use crate::gpu::recorder::Recorder;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use serde_json::{Map, Value};
 use settings::{Setting, Settings};
 use std::pin::Pin;
@@ -14,7 +14,7 @@ use std::pin::Pin;
 /// Fills a frame's visibility. It may be made on one thread and recorded on another.
 pub trait Technique: wgpu::WasmNotSend {
     /// Records all passes. Resources are asked for from the recorder, which keeps them from frame to frame.
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error>;
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error>;
 
     /// Counts of the last frame that are neither time nor memory, such as the number of maps. Waits for the GPU: for
     /// tests and reports.

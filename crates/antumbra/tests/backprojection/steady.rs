@@ -33,7 +33,7 @@ fn jumps(spec: &str, scene_of: impl Fn(f32) -> Scene) -> Jumps {
     let (mut shadow, mut control) = (technique(spec), technique("uniform-sampling:samples=16,map=512"));
     let mut shot = |i: usize| {
         let scene = scene_of(i as f32 / FRAMES as f32);
-        renderer.frame.update(gpu(), View::of_camera(&scene.camera, SIZE), scene.light, frustum);
+        renderer.frame.update(View::of_camera(&scene.camera, SIZE), scene.light, frustum);
         submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{e}"));
         let [visibility, control] = [&mut shadow, &mut control]
             .map(|technique| shadowed(&renderer, technique).unwrap_or_else(|e| panic!("{spec}: {e}")));

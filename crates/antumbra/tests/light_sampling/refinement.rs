@@ -87,7 +87,7 @@ fn far_away_shadows_take_fewer_maps_unless_the_light_s_view_decides() {
     let mut maps = |settings: &str| {
         eyes.map(|eye| {
             let (light, frustum) = (renderer.frame.light, renderer.frame.frustum);
-            renderer.frame.update(gpu(), View::of_camera(&eye, SIZE), light, frustum);
+            renderer.frame.update(View::of_camera(&eye, SIZE), light, frustum);
             submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{e}"));
             let mut adaptive = technique(&format!("adaptive-sampling:{settings}"));
             picture(&renderer, &mut adaptive);

@@ -19,7 +19,7 @@ fn resting() -> SceneRenderer {
 fn change(renderer: &mut SceneRenderer, camera: &Camera, light_shift: Vec3) {
     let (mut light, frustum) = (renderer.frame.light, renderer.frame.frustum);
     light.center += light_shift;
-    renderer.frame.update(gpu(), View::of_camera(camera, SIZE), light, frustum);
+    renderer.frame.update(View::of_camera(camera, SIZE), light, frustum);
     submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{e}"));
 }
 

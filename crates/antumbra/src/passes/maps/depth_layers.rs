@@ -21,7 +21,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_map::{DepthMap, Drawing, Extra};
 use crate::passes::triangles::culling::Surfaces;
 use crate::{bindings, gpu_struct};
@@ -65,7 +65,7 @@ impl DepthLayers {
     /// below `apart` texels. With 0 each surface is a layer, and those behind the last are dropped.
     pub fn of_light(
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         size: u32,
         layers: u32,
         apart: f32,
@@ -108,7 +108,7 @@ fn collected_surfaces(gpu: &Gpu, size: u32, layers: u32, merged: bool) -> Result
 }
 
 /// The difference of inverse distances that has a parallax of `apart` texels over half the light, 1/metres.
-fn largest_gap(frame: &Frame, size: u32, apart: f32) -> f32 {
+fn largest_gap(frame: &BoundFrame, size: u32, apart: f32) -> f32 {
     let texel = 2.0 * frame.frustum.tan_half / size as f32;
     let half_light = (0.5 * frame.light.size).max(glam::Vec2::splat(1.0e-6));
     apart * (texel / half_light).min_element()

@@ -7,7 +7,7 @@ use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
 use crate::input::casters::Casters;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::input::map_view::MapView;
 use crate::passes::triangles::culling::{Culling, Surfaces};
 use crate::{bindings, gpu_struct};
@@ -152,7 +152,7 @@ impl<'a> Drawing<'a> {
 
 impl DepthMap {
     /// Draws the casters from the light's centre into a map of `size` texels per side.
-    pub fn of_light(recorder: &mut Recorder, frame: &Frame, size: u32) -> Result<DepthMap, Error> {
+    pub fn of_light(recorder: &mut Recorder, frame: &BoundFrame, size: u32) -> Result<DepthMap, Error> {
         DepthMap::record(recorder, &frame.casters, frame.map_clip_from_world(), size)
     }
 
@@ -171,7 +171,7 @@ impl DepthMap {
     /// window shows is not in that window. Holes of masked materials that are smaller than a texel may be closed.
     pub(crate) fn record_touched(
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         label: &'static str,
         size: u32,
     ) -> Result<DepthMap, Error> {

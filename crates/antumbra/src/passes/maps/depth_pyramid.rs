@@ -24,11 +24,17 @@ pub struct DepthPyramid {
     pub layers: Texture,
 }
 
+/// Nodes per side of a pyramid's finest level over a map of `size` texels per side. A power of two: the side of a mip
+/// level is rounded down, so any other side would lose the last nodes of a level with an odd number of them.
+pub(crate) fn finest_level(size: u32) -> u32 {
+    size.div_ceil(2).next_power_of_two()
+}
+
 impl DepthPyramid {
     /// Reduces a map whose frustum begins at `map_near` metres.
     pub fn record(recorder: &mut Recorder, map: &DepthMap, map_near: f32) -> Result<DepthPyramid, Error> {
-        let half = map.size.div_ceil(2).max(1);
-        let mips = 32 - half.leading_zeros();
+        let half = finest_level(map.size);
+        let mips = half.ilog2() + 1;
         let texture = |format, help| TextureDescription::new([half; 2], format, help).mips(mips);
         let bounds =
             texture(wgpu::TextureFormat::Rg32Float, "smallest and largest inverse distance below each node, 1/metres");
@@ -55,7 +61,7 @@ impl DepthPyramid {
                 level_bounds: &level_bounds,
                 level_layers: &level_layers,
             };
-            let side = (half >> level).max(1);
+            let side = half >> level;
             recorder.compute("depth pyramid", pipeline, &[set], Work::Threads([side, side, 1]))?;
         }
         Ok(DepthPyramid { bounds, layers })

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::texture::Texture;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_map::{DepthMap, Drawing};
 use crate::passes::triangles::culling::Surfaces;
 
@@ -18,7 +18,7 @@ pub struct LightDepth {
 
 impl LightDepth {
     /// Draws both, `size` texels per side with 1 or 4 depths in each.
-    pub fn record(recorder: &mut Recorder, frame: &Frame, size: u32, samples: u32) -> Result<LightDepth, Error> {
+    pub fn record(recorder: &mut Recorder, frame: &BoundFrame, size: u32, samples: u32) -> Result<LightDepth, Error> {
         let (casters, clip_from_world) = (&frame.casters, frame.map_clip_from_world());
         let nearest = Drawing { samples, ..Drawing::of("depth map", Surfaces::Casters) };
         let farthest = Drawing {

@@ -5,6 +5,7 @@ use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
 use crate::passes::maps::depth_layers::DepthLayers;
+use crate::passes::maps::depth_pyramid::finest_level;
 use crate::{bindings, gpu_struct};
 
 gpu_struct! {
@@ -20,8 +21,8 @@ gpu_struct! {
 /// Reduces maps whose frustum begins at `map_near` metres: levels from half their size down to one texel, an array
 /// layer for each of theirs. `Rgba32Uint`; see `shaders/patches.wesl`.
 pub fn patch_pyramid(recorder: &mut Recorder, maps: &DepthLayers, map_near: f32) -> Result<Texture, Error> {
-    let half = maps.nearest.size.div_ceil(2).max(1);
-    let (layers, mips) = (maps.texture.texture.depth_or_array_layers(), 32 - half.leading_zeros());
+    let half = finest_level(maps.nearest.size);
+    let (layers, mips) = (maps.texture.texture.depth_or_array_layers(), half.ilog2() + 1);
     let help = "packed patches: inverse distance of the nearer surface, of the farther, slopes, residual and shares";
     let description =
         TextureDescription::new([half; 2], wgpu::TextureFormat::Rgba32Uint, help).layers(layers).mips(mips);
@@ -39,7 +40,7 @@ pub fn patch_pyramid(recorder: &mut Recorder, maps: &DepthLayers, map_near: f32)
             source_patches: &finer,
             level_patches: &own,
         };
-        let side = (half >> level).max(1);
+        let side = half >> level;
         recorder.compute("patch pyramid", pipeline, &[set], Work::Threads([side, side, layers]))?;
     }
     Ok(patches)

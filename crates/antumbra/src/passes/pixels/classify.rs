@@ -6,7 +6,7 @@ use crate::gpu::debug_view::DebugLayout;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::passes::maps::depth_pyramid::DepthPyramid;
 
@@ -49,7 +49,7 @@ impl PenumbraList {
     /// it. A pixel that is lit by the map is lit.
     pub fn record(
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         map: &DepthMap,
         pyramid: &DepthPyramid,
         listing: Listing,

@@ -6,7 +6,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::pixels::geometry_buffer::GeometryBuffer;
 
 /// A texture for [`shade`]: `Rgba8Unorm` with sRGB values.
@@ -15,7 +15,12 @@ pub fn image_texture(gpu: &Gpu, size: [u32; 2]) -> Texture {
 }
 
 /// Shades a geometry buffer with the frame's visibility.
-pub fn shade(recorder: &mut Recorder, frame: &Frame, geometry: &GeometryBuffer, image: &Texture) -> Result<(), Error> {
+pub fn shade(
+    recorder: &mut Recorder,
+    frame: &BoundFrame,
+    geometry: &GeometryBuffer,
+    image: &Texture,
+) -> Result<(), Error> {
     let pipeline = recorder.gpu.compute_pipeline(&ShaderKey::new("passes::pixels::shading"), "shade")?;
     let own = bindings! { base_color: &geometry.color, image: image };
     recorder.compute("image", &pipeline, &[&frame.bindings(), own], Work::Pixels(frame.size))

@@ -12,7 +12,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::uniform;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_layers::DepthLayers;
 use crate::passes::maps::depth_pyramid::DepthPyramid;
 use crate::passes::maps::patch_pyramid::patch_pyramid;
@@ -88,7 +88,7 @@ impl Backprojection {
 }
 
 impl Technique for Backprojection {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let BackprojectionSettings { map, layers, apart, spacing, .. } = self.settings;
         let near = frame.frustum.near;
         let maps = DepthLayers::of_light(recorder, frame, map, layers, apart)?;

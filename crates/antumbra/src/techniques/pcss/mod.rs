@@ -16,7 +16,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::uniform;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::passes::maps::depth_pyramid::DepthPyramid;
 use crate::passes::pixels::classify::{Listing, PenumbraList};
@@ -101,7 +101,7 @@ fn soften_key(antialias: bool) -> ShaderKey {
 }
 
 impl Technique for Pcss {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let map = DepthMap::of_light(recorder, frame, self.settings.map)?;
         let pyramid = DepthPyramid::record(recorder, &map, frame.frustum.near)?;
         let listing = Listing { trust_dark: true, footprints: self.antialias };

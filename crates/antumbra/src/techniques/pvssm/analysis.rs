@@ -10,7 +10,7 @@ use crate::gpu::debug_view::DebugLayout;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::passes::maps::depth_pyramid::DepthPyramid;
 use crate::passes::pixels::classify::{Listing, PenumbraList};
@@ -28,7 +28,7 @@ impl Analysis {
     /// Draws the map, lists the pixels and finds their kernels. Pixels without an occluder are lit and have none.
     pub fn record(
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         settings: &PvssmSettings,
         uniform: &wgpu::Buffer,
     ) -> Result<Analysis, Error> {

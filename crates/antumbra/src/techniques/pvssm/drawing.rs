@@ -11,7 +11,7 @@ use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
 use crate::input::casters::{CLUSTER_TRIANGLES, Casters};
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::input::map_view::MapView;
 
 /// Bytes of the arguments of an indirect draw.
@@ -41,7 +41,13 @@ impl Pool {
     }
 
     /// Reduces the tiles of a round, two levels at a time.
-    pub fn reduce_tiles(&self, recorder: &mut Recorder, frame: &Frame, plan: &Plan, round: u32) -> Result<(), Error> {
+    pub fn reduce_tiles(
+        &self,
+        recorder: &mut Recorder,
+        frame: &BoundFrame,
+        plan: &Plan,
+        round: u32,
+    ) -> Result<(), Error> {
         let key = ShaderKey::new("techniques::pvssm::reduce_tiles");
         for step in 0..LEVELS / 2 {
             let first = step == 0;
@@ -69,7 +75,7 @@ pub(crate) struct Drawing {
 
 impl Drawing {
     /// Lists with capacity for every cluster in every tile of a round.
-    pub fn prepare(recorder: &mut Recorder, frame: &Frame, settings: &PvssmSettings) -> Result<Drawing, Error> {
+    pub fn prepare(recorder: &mut Recorder, frame: &BoundFrame, settings: &PvssmSettings) -> Result<Drawing, Error> {
         let clusters = frame.casters.cluster_count;
         if clusters >= MOST_CLUSTERS {
             let most = u64::from(MOST_CLUSTERS) * u64::from(CLUSTER_TRIANGLES);

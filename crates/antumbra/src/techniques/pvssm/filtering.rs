@@ -9,7 +9,7 @@ use crate::error::Error;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 
 /// The pixels of each round, and their sums.
 pub(crate) struct Filtering {
@@ -23,7 +23,7 @@ impl Filtering {
     /// Lists the blocks of pixels whose kernels touch tiles of each round.
     pub fn bin_pixels(
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         settings: &PvssmSettings,
         analysis: &Analysis,
         plan: &Plan,
@@ -49,7 +49,7 @@ impl Filtering {
     pub fn soften(
         &self,
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         analysis: &Analysis,
         plan: &Plan,
         pool: &Pool,

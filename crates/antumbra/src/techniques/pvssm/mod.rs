@@ -26,7 +26,7 @@ use crate::gpu::limits::Needs;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::resources::uniform;
 use crate::gpu_struct;
-use crate::input::frame::{Frame, MapInput};
+use crate::input::frame::{BoundFrame, MapInput};
 use crate::technique::{Description, StatsFuture, Technique, TechniqueFactory};
 use analysis::Analysis;
 use drawing::{Drawing, Pool};
@@ -120,7 +120,7 @@ impl Pvssm {
 }
 
 impl Technique for Pvssm {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let point = self.point_light.then(|| frame.with_point_light(recorder));
         let (frame, settings) = (point.as_ref().unwrap_or(frame), &self.settings);
         let input = MapInput::of(frame);

@@ -12,7 +12,7 @@ use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::{BufferDescription, UniformArray};
 use crate::gpu::shader::ShaderKey;
 use crate::input::casters::Casters;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::{binding_array, bindings, gpu_struct};
 use glam::{UVec2, UVec4};
 use pollster::block_on;
@@ -161,7 +161,7 @@ impl Decided {
 /// Stores the resolution that each kernel needs in the grid's pyramid: two numbers per node.
 pub(crate) fn predict(
     recorder: &mut Recorder,
-    frame: &Frame,
+    frame: &BoundFrame,
     settings: &PvssmSettings,
     uniform: &wgpu::Buffer,
     analysis: &Analysis,

@@ -10,13 +10,13 @@ use crate::gpu::pipeline::RenderTarget;
 use crate::gpu::recorder::{Recorder, Work, color_target};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 
 /// Accumulates the shadows of all patches from the coarsest level to the finest and takes the maximum of the layers.
 /// `R32Float`, `map` x `map`: the fraction of the light that is hidden from the receiver at each texel.
 pub(super) fn soft_shadow_map(
     recorder: &mut Recorder,
-    frame: &Frame,
+    frame: &BoundFrame,
     settings: &SsmSettings,
     maps: &Maps,
     patches: &Patches,
@@ -40,7 +40,7 @@ pub(super) fn soft_shadow_map(
 /// The soft shadow map of each level, with the shadows of all coarser ones: a layer for each occluder map.
 fn soften(
     recorder: &mut Recorder,
-    frame: &Frame,
+    frame: &BoundFrame,
     format: Format,
     maps: &Maps,
     patches: &Patches,
@@ -76,7 +76,7 @@ fn soften(
 /// The penumbra rectangles of all patches, blended level by level.
 fn draw_rectangles(
     recorder: &mut Recorder,
-    frame: &Frame,
+    frame: &BoundFrame,
     format: Format,
     maps: &Maps,
     patches: &Patches,

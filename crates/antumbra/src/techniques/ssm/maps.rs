@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::gpu::recorder::Recorder;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_map::{DepthMap, Drawing, Extra};
 use crate::passes::triangles::culling::Surfaces;
 
@@ -19,7 +19,7 @@ pub(super) struct Maps {
 
 impl Maps {
     /// Draws maps of `size` texels per side. The triangles of the occluders are drawn once, also for two passes.
-    pub fn record(recorder: &mut Recorder, frame: &Frame, size: u32, passes: u32) -> Result<Maps, Error> {
+    pub fn record(recorder: &mut Recorder, frame: &BoundFrame, size: u32, passes: u32) -> Result<Maps, Error> {
         let mut draw = |drawing: Drawing| drawing.record(recorder, &frame.casters, frame.map_clip_from_world(), size);
         let (receivers, _) = draw(Drawing::of("receiver map", Surfaces::Receivers))?;
         let extra = if passes > 1 { Extra::FarthestBefore(&receivers.texture) } else { Extra::Nothing };

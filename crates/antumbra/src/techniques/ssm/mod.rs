@@ -20,7 +20,7 @@ use crate::gpu::readback::read_buffer;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::Texture;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::technique::{Description, StatsFuture, Technique, TechniqueFactory};
 use accumulate::soft_shadow_map;
 use maps::Maps;
@@ -85,7 +85,7 @@ impl Ssm {
     }
 
     /// Warns once of each fault that the image of this frame will have.
-    fn warn(&mut self, frame: &Frame) {
+    fn warn(&mut self, frame: &BoundFrame) {
         for sentence in warnings::of_frame(frame, &self.settings) {
             if !self.warned.contains(&sentence) {
                 tracing::warn!("{sentence}");
@@ -96,7 +96,7 @@ impl Ssm {
 }
 
 impl Technique for Ssm {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         self.warn(frame);
         let maps = Maps::record(recorder, frame, self.settings.map, self.settings.passes)?;
         let patches = Patches::record(recorder, frame, &self.settings, &maps)?;

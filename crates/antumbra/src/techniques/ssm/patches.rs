@@ -8,7 +8,7 @@ use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::{BufferDescription, UniformArray};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_pyramid::DepthPyramid;
 use crate::{binding_array, bindings, gpu_struct};
 
@@ -56,7 +56,7 @@ pub(super) struct Patches {
 }
 
 impl SsmUniform {
-    fn new(frame: &Frame, settings: &SsmSettings) -> SsmUniform {
+    fn new(frame: &BoundFrame, settings: &SsmSettings) -> SsmUniform {
         let levels = if settings.hierarchy { (settings.map / TILE).max(1).ilog2() + 1 } else { 1 };
         SsmUniform {
             farthest_receiver_q: 1.0 / frame.frustum.receivers[1],
@@ -78,7 +78,7 @@ impl Patches {
     /// Turns texels of the occluder maps into patches, and moves those with wide penumbrae to coarser levels.
     pub fn record(
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         settings: &SsmSettings,
         maps: &Maps,
     ) -> Result<Patches, Error> {

@@ -2,7 +2,7 @@
 
 use super::SsmSettings;
 use super::settings::Format;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 
 /// The largest inverse distance of an occluder, in 1/metres, whose patches float16 does not lose, over a receiver at
 /// `receiver_q`: 1/zO < 1/zR + 64 tan a / (N L) [Atty 2006, equation 4]. `tan_half` is the tangent of the map's half
@@ -12,7 +12,7 @@ pub fn largest_float16_q(receiver_q: f32, tan_half: f32, size: f32, light: f32) 
 }
 
 /// The warnings of a frame, a sentence each.
-pub(super) fn of_frame(frame: &Frame, settings: &SsmSettings) -> Vec<String> {
+pub(super) fn of_frame(frame: &BoundFrame, settings: &SsmSettings) -> Vec<String> {
     let bounds = frame.casters.occluder_bounds();
     if bounds.min.x > bounds.max.x {
         let none = "ssm: nothing casts, as no surface is above another one (`Role::Caster`): all receivers are lit";

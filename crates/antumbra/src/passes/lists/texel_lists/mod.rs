@@ -7,7 +7,7 @@ use crate::gpu::debug_view::DebugLayout;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::lists::list_length::ListLength;
 use crate::passes::lists::scan::Scan;
 use crate::{binding_array, gpu_struct};
@@ -75,7 +75,7 @@ impl TexelLists {
     pub fn record(
         &self,
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         key: &ShaderKey,
         more: &[Binding],
     ) -> Result<(), Error> {

@@ -11,7 +11,7 @@ use crate::gpu::resources::{BufferDescription, UniformArray};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
 use crate::input::casters::Casters;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::{bindings, gpu_struct};
 use glam::Vec2;
 use std::ops::Range;
@@ -110,7 +110,7 @@ impl LightMaps {
     /// Maps of `size` texels per side, drawn from points of the light: positions in [-1/2, 1/2]².
     pub(crate) fn new(
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         size: u32,
         layout: Layers,
         points: &[Vec2],

@@ -7,7 +7,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::storage_bytes;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::{bindings, gpu_struct};
 use glam::Vec2;
 use std::sync::Arc;
@@ -74,7 +74,7 @@ impl Evaluation {
     pub fn record(
         &self,
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         maps: &LightMaps,
         entries: &wgpu::Buffer,
         part: u32,

@@ -15,7 +15,7 @@ pub(crate) use evaluate::{Entry, entry_list};
 use crate::gpu::recorder::Recorder;
 use crate::gpu::resources::storage_bytes;
 use crate::gpu_struct;
-use crate::input::frame::{Frame, light_from_world};
+use crate::input::frame::{BoundFrame, light_from_world};
 use glam::{DMat4, DVec4, Mat4, Vec2};
 
 gpu_struct! {
@@ -33,7 +33,7 @@ gpu_struct! {
 
 /// The table of light points on the GPU, an array of `LightSample`: `points` are positions on the light, each in
 /// [-1/2, 1/2]². Points of one number are the same for a light of one size.
-pub(crate) fn light_samples(recorder: &mut Recorder, frame: &Frame, points: &[Vec2]) -> wgpu::Buffer {
+pub(crate) fn light_samples(recorder: &mut Recorder, frame: &BoundFrame, points: &[Vec2]) -> wgpu::Buffer {
     let (light, f) = (&frame.light, &frame.frustum);
     let (right, up, forward) = light.basis();
     let vectors = [light.center, right, up, forward].map(|v| v.to_array());
@@ -47,7 +47,7 @@ pub(crate) fn light_samples(recorder: &mut Recorder, frame: &Frame, points: &[Ve
 
 /// The map of a light point: an oblique frustum whose window at the middle of the receivers' range of inverse distances
 /// is the one of the centre's map, wider by the window's movement between the ends of that range.
-fn sample(frame: &Frame, place: Vec2) -> LightSample {
+fn sample(frame: &BoundFrame, place: Vec2) -> LightSample {
     let (point, f) = (place * frame.light.size, &frame.frustum);
     let [near_q, far_q] = f.receivers.map(|z| 1.0 / z);
     let tan_half = f.tan_half + point.abs() * (0.5 * (near_q - far_q));

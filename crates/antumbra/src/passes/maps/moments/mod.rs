@@ -13,7 +13,7 @@ use crate::error::Error;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::light_depth::LightDepth;
 use crate::{bindings, gpu_struct};
 use glam::UVec2;
@@ -59,7 +59,7 @@ impl MomentMap {
     /// Draws the depths, stores the values that the module at `part` makes of them, and filters these.
     pub fn record(
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         shape: MomentShape,
         part: &'static str,
         warp: DepthWarp,

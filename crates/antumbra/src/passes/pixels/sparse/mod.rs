@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::pixels::classify::PenumbraList;
 use crate::{bindings, gpu_struct};
 
@@ -35,7 +35,7 @@ const MOST_DIFFERENCE: f32 = 0.01;
 /// sharpness (more than 0) of the listed pixels.
 pub fn shade_sparsely(
     recorder: &mut Recorder,
-    frame: &Frame,
+    frame: &BoundFrame,
     all: &PenumbraList,
     spacing: u32,
     mut shade: impl FnMut(&mut Recorder, &wgpu::Buffer, &wgpu::Buffer) -> Result<(), Error>,

@@ -8,7 +8,7 @@ use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
 use crate::input::casters::{CLUSTER_TRIANGLES, Casters};
-use crate::input::frame::{Frame, light_from_world};
+use crate::input::frame::{BoundFrame, light_from_world};
 use crate::passes::lists::list_length::ListLength;
 use crate::{bindings, gpu_struct};
 use glam::{Mat4, Vec2};
@@ -80,7 +80,7 @@ impl Part {
     fn gather(
         &self,
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         key: &ShaderKey,
         half_light: Vec2,
         output: &[Binding],
@@ -126,7 +126,7 @@ impl CenterTriangles {
     }
 
     /// Gathers a part; returns the number of its triangles.
-    pub fn record(&self, recorder: &mut Recorder, frame: &Frame, part: &Part) -> Result<ListLength, Error> {
+    pub fn record(&self, recorder: &mut Recorder, frame: &BoundFrame, part: &Part) -> Result<ListLength, Error> {
         let key = ShaderKey::new("passes::triangles::light_triangles::gather");
         part.gather(recorder, frame, &key, Vec2::ZERO, bindings! { gathered: &self.buffer })
     }
@@ -154,7 +154,7 @@ impl AreaTriangles {
     }
 
     /// Gathers a part; returns the number of its clusters.
-    pub fn record(&self, recorder: &mut Recorder, frame: &Frame, part: &Part) -> Result<ListLength, Error> {
+    pub fn record(&self, recorder: &mut Recorder, frame: &BoundFrame, part: &Part) -> Result<ListLength, Error> {
         let key = ShaderKey::new("passes::triangles::light_triangles::gather")
             .feature("clusters", true)
             .feature("masked", part.masked.is_some());

@@ -8,7 +8,7 @@ use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::Texture;
-use crate::input::frame::{Frame, light_from_world};
+use crate::input::frame::{BoundFrame, light_from_world};
 use crate::passes::maps::depth_map::DepthMap;
 use crate::passes::maps::summed_area::mask_counts;
 use crate::passes::triangles::adjacency::edge_rings;
@@ -54,7 +54,7 @@ impl SilhouetteMask {
     /// mask has its size.
     pub fn record(
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         map: &DepthMap,
         marking: Marking,
     ) -> Result<SilhouetteMask, Error> {

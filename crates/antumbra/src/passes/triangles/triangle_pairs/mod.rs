@@ -16,7 +16,7 @@ use crate::gpu::readback::read_buffer;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::lists::list_length::ListLength;
 use crate::passes::lists::scan::Scan;
 use crate::passes::lists::sort::Sort;
@@ -108,7 +108,12 @@ pub struct TrianglePairs {
 
 impl TrianglePairs {
     /// Empty lists for the casters of a frame.
-    pub fn new(recorder: &mut Recorder, frame: &Frame, lists: &TexelLists, capacity: &PairCapacity) -> TrianglePairs {
+    pub fn new(
+        recorder: &mut Recorder,
+        frame: &BoundFrame,
+        lists: &TexelLists,
+        capacity: &PairCapacity,
+    ) -> TrianglePairs {
         // The candidates of a part are counted in 32 bits.
         let parts = Part::of(&frame.casters, MOST_TRIANGLES.min((1 << 31) / lists.block_side.pow(2)));
         let triangles = CenterTriangles::new(recorder, &parts);
@@ -141,7 +146,7 @@ impl TrianglePairs {
     pub fn record(
         &self,
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         lists: &TexelLists,
         shader: &PairShader,
     ) -> Result<(), Error> {
@@ -167,7 +172,7 @@ impl TrianglePairs {
     fn find(
         &self,
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         lists: &TexelLists,
         length: &ListLength,
     ) -> Result<(), Error> {
@@ -219,7 +224,7 @@ impl TrianglePairs {
     fn evaluate(
         &self,
         recorder: &mut Recorder,
-        frame: &Frame,
+        frame: &BoundFrame,
         lists: &TexelLists,
         (part, length): (&Part, &ListLength),
         shader: &PairShader,

@@ -14,7 +14,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::BufferDescription;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::lists::texel_lists::TexelLists;
 use crate::passes::pixels::geometry_buffer::GeometryBuffer;
 use crate::passes::triangles::triangle_pairs::{PairCapacity, PairShader, TrianglePairs};
@@ -76,7 +76,7 @@ impl TechniqueFactory for AliasFree {
 }
 
 impl Technique for AliasFree {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let [width, height] = frame.size;
         let count = self.settings.samples;
         let samples = recorder.uniforms("samples", (0..count).map(|index| SampleUniform { index, count }));

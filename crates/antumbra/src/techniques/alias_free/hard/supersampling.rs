@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::gpu::recorder::Recorder;
-use crate::input::frame::{Frame, View};
+use crate::input::frame::{BoundFrame, View};
 use crate::passes::pixels::geometry_buffer::GeometryBuffer;
 use glam::{DVec2, Mat4, Vec4};
 
@@ -24,10 +24,10 @@ fn shifted(view: &View, by: DVec2, size: [u32; 2]) -> View {
 /// Draws the geometry at point `index` of every pixel; returns the frame that is seen there.
 pub(super) fn frame_of_point(
     recorder: &mut Recorder,
-    frame: &Frame,
+    frame: &BoundFrame,
     geometry: &GeometryBuffer,
     index: u32,
-) -> Result<Frame, Error> {
+) -> Result<BoundFrame, Error> {
     let view = shifted(&frame.view, point(index), frame.size);
     geometry.record_as(recorder, "geometry of points", &frame.casters, &view)?;
     Ok(frame.with_view(recorder, view, [&geometry.depth.view, &geometry.normal.view]))

@@ -12,7 +12,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::{BufferDescription, buffer_of};
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::triangles::light_triangles::{AreaTriangles, Part};
 use crate::technique::settings::Kind;
 use crate::technique::{Description, Technique, TechniqueFactory};
@@ -128,7 +128,7 @@ fn place_of(k: u32, points: u32) -> DVec2 {
 
 impl AliasFreeSoft {
     /// Lattice coordinates of metres on this light.
-    fn lattice_uniform(&self, frame: &Frame) -> LatticeUniform {
+    fn lattice_uniform(&self, frame: &BoundFrame) -> LatticeUniform {
         let least = LEAST_LIGHT * frame.frustum.receivers[0];
         let size = frame.light.size.max(Vec2::splat(least)).as_dvec2();
         let inverse = self.lattice.basis.inverse();
@@ -165,7 +165,7 @@ fn effort(recorder: &mut Recorder, size: [u32; 2]) -> Option<wgpu::Buffer> {
 }
 
 impl Technique for AliasFreeSoft {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let gpu = recorder.gpu;
         let parts = Part::of(&frame.casters, MOST_TRIANGLES);
         let passes = self.passes(gpu, &parts);

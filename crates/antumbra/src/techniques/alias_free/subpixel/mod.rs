@@ -28,7 +28,7 @@ use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::{BufferDescription, buffer_of, uniform};
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::{Texture, TextureDescription};
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::lists::texel_lists::TexelLists;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::passes::triangles::silhouette::{Marking, SilhouetteMask};
@@ -150,7 +150,7 @@ fn gaussian(pattern: &Pattern) -> Vec<f32> {
 }
 
 impl Technique for Subpixel {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let map = DepthMap::of_light(recorder, frame, self.settings.map)?;
         let marking = Marking { hide: self.settings.hide, count: self.settings.statistics };
         let silhouettes = SilhouetteMask::record(recorder, frame, &map, marking)?;

@@ -19,7 +19,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::shader::ShaderKey;
 use crate::gpu::texture::Texture;
-use crate::input::frame::{Frame, MapInput};
+use crate::input::frame::{BoundFrame, MapInput};
 use crate::passes::maps::depth_map::DepthMap;
 use crate::passes::maps::depth_pyramid::DepthPyramid;
 use crate::passes::maps::light_maps::LightMaps;
@@ -102,7 +102,7 @@ impl TechniqueFactory for AdaptiveSampling {
 }
 
 impl Technique for AdaptiveSampling {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let Prepared { tree, maps, maps_valid, is_new } = self.prepare(frame, recorder)?;
         let settings = &self.settings;
         let light_view = match settings.space {
@@ -164,7 +164,7 @@ struct Prepared {
 }
 
 impl AdaptiveSampling {
-    fn prepare(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<Prepared, Error> {
+    fn prepare(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<Prepared, Error> {
         let settings = &self.settings;
         if self.plan.as_ref().is_none_or(|plan| plan.key != TreeKey::of(frame)) {
             (self.plan, self.last) = (None, None);
@@ -188,7 +188,7 @@ impl AdaptiveSampling {
 }
 
 /// The pixels in penumbra by one map from the light's centre.
-fn penumbra_list(recorder: &mut Recorder, frame: &Frame, size: u32) -> Result<PenumbraList, Error> {
+fn penumbra_list(recorder: &mut Recorder, frame: &BoundFrame, size: u32) -> Result<PenumbraList, Error> {
     let map = DepthMap::of_light(recorder, frame, size)?;
     let pyramid = DepthPyramid::record(recorder, &map, frame.frustum.near)?;
     PenumbraList::record(recorder, frame, &map, &pyramid, Listing::default())

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::gpu::bindings::Binding;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::texture::Texture;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::light_maps::LightMaps;
 use crate::passes::pixels::classify::PenumbraList;
 
@@ -23,7 +23,7 @@ pub(super) struct Sum<'a> {
 
 /// The resources of a frame's passes.
 pub(super) struct Rounds<'a> {
-    pub frame: &'a Frame,
+    pub frame: &'a BoundFrame,
     pub pipelines: &'a Pipelines,
     pub plan: &'a TreePlan,
     pub tree: &'a Tree,

@@ -7,7 +7,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::readback::read_buffer;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::resources::{BufferDescription, UniformArray, storage_bytes};
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::light_maps::draw::Layers;
 use crate::passes::maps::light_maps::{Evaluation, LightMaps, MapSlot, MapStage};
 use crate::techniques::light_sampling::uniform::{Evaluate, Weights};
@@ -171,7 +171,7 @@ pub(super) struct TreeKey {
 }
 
 impl TreeKey {
-    pub fn of(frame: &Frame) -> TreeKey {
+    pub fn of(frame: &BoundFrame) -> TreeKey {
         let casters = &frame.casters;
         let (image, light_size) = (frame.size, frame.light.size);
         TreeKey { image, light_size, clusters: casters.cluster_count, batches: casters.batches.len() }
@@ -179,7 +179,7 @@ impl TreeKey {
 }
 
 impl TreePlan {
-    pub fn new(gpu: &Gpu, settings: &AdaptiveSamplingSettings, frame: &Frame) -> Result<TreePlan, Error> {
+    pub fn new(gpu: &Gpu, settings: &AdaptiveSamplingSettings, frame: &BoundFrame) -> Result<TreePlan, Error> {
         let key = TreeKey::of(frame);
         let shape = Shape::of_settings(key.light_size, settings);
         let capacity = Self::capacity(gpu, settings, shape);

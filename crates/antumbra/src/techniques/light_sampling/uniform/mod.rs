@@ -12,7 +12,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::recorder::Recorder;
 use crate::gpu::resources::storage_bytes;
 use crate::gpu::texture::Texture;
-use crate::input::frame::{Frame, MapInput};
+use crate::input::frame::{BoundFrame, MapInput};
 use crate::passes::maps::light_maps::draw::Layers;
 use crate::passes::maps::light_maps::{Entry, Evaluation, LightMaps, MapSlot, entry_list};
 use crate::technique::settings::Kind;
@@ -126,7 +126,7 @@ impl TechniqueFactory for UniformSampling {
 }
 
 impl Technique for UniformSampling {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         if self.plan.as_ref().is_none_or(|p| p.light_size != frame.light.size) {
             self.plan = None;
         }

@@ -8,7 +8,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::uniform;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::moments::{DepthWarp, MomentMap, MomentShape, Nearest, TexelFormat};
 use crate::technique::settings::Settings;
 use crate::technique::{Description, Technique, TechniqueFactory};
@@ -194,7 +194,7 @@ fn sampler(gpu: &Gpu, anisotropy: u16, last_level: f32) -> wgpu::Sampler {
 }
 
 impl<P: Prefilter> Technique for Prefiltered<P> {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let warp = self.stored.warp.over(frame, Nearest::Receiver);
         let map = MomentMap::record(recorder, frame, self.shape, P::WARP, warp)?;
         let own = bindings! {

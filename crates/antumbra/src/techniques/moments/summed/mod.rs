@@ -8,7 +8,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::uniform;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_pyramid::DepthPyramid;
 use crate::passes::maps::light_depth::LightDepth;
 use crate::passes::maps::moments::{DepthWarp, Nearest};
@@ -89,7 +89,7 @@ fn soften_key<S: Soft>(plan: &Plan) -> ShaderKey {
 }
 
 impl<S: Soft> Technique for Summed<S> {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let depth = LightDepth::record(recorder, frame, self.plan.table.size, 1)?;
         let map = &depth.casters;
         let pyramid = DepthPyramid::record(recorder, map, frame.frustum.near)?;

@@ -189,7 +189,7 @@ fn tiles_are_kept_while_light_and_casters_are_static_only() {
     let mut light = renderer.frame.light;
     light.center.x += 0.3;
     let (view, frustum) = (renderer.frame.view, renderer.frame.frustum);
-    renderer.frame.update(gpu(), view, light, frustum);
+    renderer.frame.update(view, light, frustum);
     let moved = shadowed(&renderer, &mut one);
     assert_eq!(stat(&one, "tiles kept"), 0.0);
     assert!(moved == shadowed(&renderer, &mut technique("pvssm:map=256,tile=1024")), "an old tile is used");

@@ -8,7 +8,7 @@ use crate::gpu::device::Gpu;
 use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::technique::settings::Kind;
 use crate::technique::{Description, Technique, TechniqueFactory};
@@ -45,7 +45,7 @@ impl TechniqueFactory for Hard {
 }
 
 impl Technique for Hard {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let map = DepthMap::of_light(recorder, frame, self.settings.map)?;
         let set = [&frame.bindings()[..], bindings! { depth_map: &map.texture }];
         recorder.compute("shadow lookup", &self.lookup, &set, Work::Pixels(frame.size))

@@ -9,7 +9,7 @@ use crate::gpu::pipeline::ComputePipeline;
 use crate::gpu::recorder::{Recorder, Work};
 use crate::gpu::resources::uniform;
 use crate::gpu::shader::ShaderKey;
-use crate::input::frame::Frame;
+use crate::input::frame::BoundFrame;
 use crate::passes::maps::depth_map::DepthMap;
 use crate::technique::settings::Kind;
 use crate::technique::{Description, Technique, TechniqueFactory};
@@ -93,7 +93,7 @@ impl TechniqueFactory for Pcf {
 }
 
 impl Technique for Pcf {
-    fn record(&mut self, frame: &Frame, recorder: &mut Recorder) -> Result<(), Error> {
+    fn record(&mut self, frame: &BoundFrame, recorder: &mut Recorder) -> Result<(), Error> {
         let map = DepthMap::of_light(recorder, frame, self.settings.map)?;
         let own = bindings! { depth_map: &map.texture, comparison: &self.comparison, kernel: &self.kernel };
         let set = [&frame.bindings()[..], own];

@@ -72,8 +72,9 @@ fn marked(scene: &Scene, size: u32, hide: bool) -> (Marked, Frame) {
     let renderer = SceneRenderer::new(gpu, scene, [16, 16]).expect("uploads");
     let mut mask = None;
     submit(|recorder| {
-        let map = DepthMap::of_light(recorder, &renderer.frame, size)?;
-        mask = Some(SilhouetteMask::record(recorder, &renderer.frame, &map, Marking { hide, count: true })?);
+        let frame = renderer.frame.bind(recorder)?;
+        let map = DepthMap::of_light(recorder, &frame, size)?;
+        mask = Some(SilhouetteMask::record(recorder, &frame, &map, Marking { hide, count: true })?);
         Ok(())
     });
     let mask = mask.expect("recorded");

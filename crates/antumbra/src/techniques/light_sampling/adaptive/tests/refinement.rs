@@ -64,8 +64,10 @@ impl Refinement {
         let mut technique = AdaptiveSampling::make(gpu, trial.settings.clone()).unwrap_or_else(|e| panic!("{e}"));
         let (mut encoder, mut resources) =
             (gpu.device.create_command_encoder(&Default::default()), Resources::default());
-        let prepared = technique.prepare(&renderer.frame, &mut Recorder::new(gpu, &mut encoder, &mut resources));
-        let tree = prepared.unwrap_or_else(|e| panic!("{e}")).tree;
+        let mut recorder = Recorder::new(gpu, &mut encoder, &mut resources);
+        let frame = renderer.frame.bind(&mut recorder).unwrap_or_else(|e| panic!("{e}"));
+        let tree = technique.prepare(&frame, &mut recorder).unwrap_or_else(|e| panic!("{e}")).tree;
+        drop(recorder);
         Refinement { trial, technique, tree, held: BTreeMap::new() }
     }
 
