@@ -25,6 +25,11 @@ impl Aabb {
         !self.min.cmple(self.max).all()
     }
 
+    /// True if a point lies inside or on a face.
+    pub fn contains(&self, p: Vec3) -> bool {
+        self.min.cmple(p).all() && p.cmple(self.max).all()
+    }
+
     /// The smallest box around both.
     pub fn union(&self, other: &Aabb) -> Aabb {
         Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }

@@ -163,8 +163,9 @@ fn fit_depth(camera: &mut Camera, everything: &Aabb, casters: &Aabb) {
     let nearest = depths(casters).into_iter().fold(f32::INFINITY, f32::min);
     let distance = camera.eye.distance(camera.target);
     if camera.near <= 0.0 {
-        // The ground in front of the model is nearer than the model.
-        camera.near = (0.5 * nearest).min(0.1 * distance).max(1e-4 * farthest.max(distance));
+        // The ground in front of the model is nearer than the model. Reversed depth may begin close to the eye without
+        // loss, so a far horizon does not move the near plane.
+        camera.near = (0.5 * nearest).min(0.1 * distance).max(1e-4 * distance);
     }
     if camera.far.is_infinite() {
         camera.far = (1.01 * farthest).max(2.0 * camera.near);

@@ -110,10 +110,10 @@ fn one_mesh_that_includes_the_ground_is_fitted_as_its_parts_are() {
 fn the_lights_own_opening_counts() {
     let mut scene = boxes(4.0);
     scene.light.shadow_fov_deg = Some(50.0);
-    let (fitted, around) = (fit(&scene), ShadowFrustum::around(&scene.light, &scene.bounds()));
-    assert_eq!(fitted, around);
     let tan = 25f32.to_radians().tan();
-    assert!((fitted.tan_half - Vec2::splat(tan)).abs().max_element() < 1e-6, "{fitted:?}");
+    for frustum in [fit(&scene), ShadowFrustum::around(&scene.light, &scene.bounds())] {
+        assert!((frustum.tan_half - Vec2::splat(tan)).abs().max_element() < 1e-6, "{frustum:?}");
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! All is measured in the map's own coordinates, tangents xy / z and inverse distance 1 / z, in which planes are
 //! affine.
 
-use super::light_grid::{LightGrid, Stages, clipped, plane_of};
+use super::light_grid::{LightGrid, Stages, clipped, plane_of, window};
 use crate::input::frame::View;
 use crate::input::map_view::MapView;
 use antumbra_scene::{Aabb, RectLight, Scene};
@@ -32,8 +32,8 @@ const MAX_TAN: f32 = 5.67;
 /// side is lost on both.
 const MAX_ELONGATION: f32 = 4.0;
 
-/// Casters and receivers nearer to the light than this part of the farthest distance do not widen a frustum.
-const NEAREST: f32 = 0.02;
+/// Distance of the nearest surface that counts, as a part of the farthest, where nothing nearer is known.
+const NEAREST: f32 = 1e-3;
 
 /// A caster must be nearer to the light than the deepest surface behind it by this part of its distance.
 const SEPARATION: f32 = 2e-3;
@@ -41,27 +41,27 @@ const SEPARATION: f32 = 2e-3;
 impl ShadowFrustum {
     /// A square frustum of an opening in degrees.
     pub fn of_degrees(fov_deg: f32, near: f32, receivers: [f32; 2]) -> ShadowFrustum {
-        let tan_half = Vec2::splat((0.5 * fov_deg).to_radians().tan());
-        ShadowFrustum { tan_half, near, receivers, nearest_caster: receivers[0] }
+        ShadowFrustum { tan_half: tan_half_of(fov_deg), near, receivers, nearest_caster: receivers[0] }
     }
 
     /// The smallest frustum around a box, for hosts that know nothing closer. The light's own setting counts if it has
     /// one.
     pub fn around(light: &RectLight, bounds: &Aabb) -> ShadowFrustum {
-        let corners = bounds.corners().map(|c| light.light_from_world(c));
-        let far = corners.iter().fold(0.0f32, |m, c| m.max(c.z));
-        let nearest = far * NEAREST;
-        let low = corners.iter().fold(far, |m, c| m.min(c.z)).max(nearest);
-        let receivers = [low.max(1e-6), far.max(1e-6)];
-        if let Some(degrees) = light.shadow_fov_deg {
-            return ShadowFrustum::of_degrees(degrees, near_of(far), receivers);
-        }
-        let tan = corners.iter().fold(Vec2::splat(1e-3), |m, c| m.max(c.truncate().abs() / c.z.max(nearest)));
+        let nothing = Aabb::of_points([light.center, light.target]);
+        let bounds = if bounds.is_empty() { &nothing } else { bounds };
+        let extent = Extent::of_box(light, bounds);
+        let far = if extent.far > 0.0 { extent.far } else { 1.0 };
+        // A light inside of the box may have surfaces anywhere around it.
+        let nearest = if bounds.contains(light.center) { 0.0 } else { extent.near.min(far) };
+        let nearest = nearest.max(NEAREST * far);
         ShadowFrustum {
-            tan_half: tan.min(Vec2::splat(MAX_TAN)) * 1.01,
-            near: near_of(far),
-            receivers,
-            nearest_caster: receivers[0],
+            tan_half: match light.shadow_fov_deg {
+                Some(degrees) => tan_half_of(degrees),
+                None => (extent.tan * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN)),
+            },
+            near: near_of(nearest, far),
+            receivers: [nearest, far],
+            nearest_caster: nearest,
         }
     }
 
@@ -83,45 +83,60 @@ pub struct FrustumFit<'a> {
     stages: Stages<'a>,
     seen: Seen,
     deepest: Option<DeepestSurface>,
-    /// Half the frustum that holds the casters so far.
-    casting: Vec2,
+    casting: Casting,
+    /// Surfaces that are seen within the frustum.
+    within: Seen,
+}
+
+/// The casters of shadows on what is seen.
+#[derive(Clone, Copy, Default)]
+struct Casting {
+    /// Half the frustum that holds them and their shadows.
+    reach: Vec2,
+    /// Inverse distance of the nearest.
+    nearest_q: f32,
 }
 
 impl<'a> FrustumFit<'a> {
     /// Begins to fit.
     pub fn new(scene: &'a Scene, view: &View) -> FrustumFit<'a> {
-        // The light's own setting leaves nothing to fit.
-        let count = if scene.light.shadow_fov_deg.is_some() { 0 } else { 3 };
         FrustumFit {
             scene,
             view_planes: MapView::new(view.clip_from_world()).planes_ws,
-            stages: Stages::new(scene, count),
+            stages: Stages::new(scene, 4),
             seen: Seen::EMPTY,
             deepest: None,
-            casting: Vec2::ZERO,
+            casting: Casting::default(),
+            within: Seen::EMPTY,
         }
+    }
+
+    /// Half the frustum, once all casters are known: the light's own, or the fitted one; none if nothing casts on what
+    /// is seen.
+    fn tan_half(&self) -> Option<Vec2> {
+        if let Some(degrees) = self.scene.light.shadow_fov_deg {
+            return Some(tan_half_of(degrees));
+        }
+        let half_light = self.scene.light.size * 0.5;
+        // Receivers beyond the reach of casters are lit, casters beyond that of receivers are of no use.
+        let tan = self.casting.reach.min(self.seen.reach(half_light, self.casting.nearest_q));
+        let widest = tan.max_element();
+        (widest > 0.0).then(|| {
+            (tan.max(Vec2::splat(widest / MAX_ELONGATION)) * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN))
+        })
     }
 
     /// The frustum, once the iterator has ended.
     pub fn finish(self) -> ShadowFrustum {
-        let around = ShadowFrustum::around(&self.scene.light, &self.scene.bounds());
-        let Some(deepest) = self.deepest else { return around };
-        let (seen, half_light) = (self.seen, self.scene.light.size * 0.5);
-        // Receivers beyond the reach of casters are lit, casters beyond that of receivers are of no use.
-        let tan = self.casting.min(seen.reach(half_light, deepest.nearest_q));
-        if tan.max_element() <= 0.0 {
-            return around;
-        }
-        let tan = tan.max(Vec2::splat(tan.max_element() / MAX_ELONGATION));
+        let Some(tan_half) = self.tan_half() else {
+            return ShadowFrustum::around(&self.scene.light, &self.scene.bounds());
+        };
+        let (within, nearest_q) = (self.within, self.casting.nearest_q);
+        let far = 1.0 / if within.is_empty() { self.seen.far_q } else { within.far_q };
         // Surfaces nearer to the light than every caster take no shadow.
-        let near_q = seen.near_q.min(deepest.nearest_q).max(seen.far_q);
-        let [low, high] = around.receivers;
-        ShadowFrustum {
-            tan_half: (tan * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN)),
-            near: around.near,
-            receivers: [(1.0 / near_q).clamp(low, high), (1.0 / seen.far_q).clamp(low, high)],
-            nearest_caster: (1.0 / deepest.nearest_q).clamp(low, high),
-        }
+        let near = 1.0 / within.near_q.min(nearest_q).max(1.0 / far);
+        let (near, nearest_caster) = (near.max(NEAREST * far), (1.0 / nearest_q).min(far));
+        ShadowFrustum { tan_half, near: near_of(nearest_caster, far), receivers: [near, far], nearest_caster }
     }
 }
 
@@ -134,27 +149,63 @@ impl Iterator for FrustumFit<'_> {
             return None;
         }
         let receiver_only = self.scene.instances[run.instance].receiver_only;
-        let half_light = self.scene.light.size * 0.5;
+        let light = &self.scene.light;
         match stage {
-            0 => run.in_world().for_each(|corners| self.seen.add(corners, &self.view_planes, &self.scene.light)),
+            0 => run.in_world().for_each(|corners| self.seen.add(&clipped(&corners, &self.view_planes), light, None)),
             1 => {
                 let deepest = self.deepest.get_or_insert_with(|| DeepestSurface::over(&self.seen));
-                run.in_light_space().for_each(|corners| deepest.add(corners, receiver_only));
+                run.in_light_space().for_each(|corners| deepest.add(corners));
             }
-            _ if receiver_only => {}
-            _ => {
+            2 if receiver_only => {}
+            2 => {
                 let Some(deepest) = &self.deepest else { return None };
-                let reach = run.in_light_space().map(|corners| deepest.reach_of_caster(corners, half_light));
-                self.casting = reach.fold(self.casting, Vec2::max);
+                run.in_light_space().for_each(|corners| deepest.cast(corners, light.size * 0.5, &mut self.casting));
+            }
+            _ => {
+                let tan = self.tan_half()?;
+                for corners in run.in_world() {
+                    self.within.add(&clipped(&corners, &self.view_planes), light, Some(tan));
+                }
             }
         }
         Some(())
     }
 }
 
-/// A near plane that cuts nothing off: inverse distances are stored as floating-point numbers, so it may be close.
-fn near_of(far: f32) -> f32 {
-    (far * 1e-4).max(1e-6)
+fn tan_half_of(fov_deg: f32) -> Vec2 {
+    Vec2::splat((0.5 * fov_deg).to_radians().tan())
+}
+
+/// A near plane before the nearest caster: inverse distances are stored as floating-point numbers, so it may be close.
+fn near_of(nearest_caster: f32, far: f32) -> f32 {
+    (0.5 * nearest_caster).min(1e-4 * far).max(1e-7 * far)
+}
+
+/// What a box takes of the widest frustum.
+struct Extent {
+    /// Largest |tangent|.
+    tan: Vec2,
+    near: f32,
+    far: f32,
+}
+
+impl Extent {
+    fn of_box(light: &RectLight, bounds: &Aabb) -> Extent {
+        let corners = bounds.corners().map(|c| light.light_from_world(c));
+        let far = corners.iter().fold(0.0f32, |m, c| m.max(c.z));
+        let frustum = window(Vec2::splat(-MAX_TAN), Vec2::splat(MAX_TAN), NEAREST * far);
+        let mut extent = Extent { tan: Vec2::ZERO, near: f32::INFINITY, far };
+        // Corner i has bit 0 for x, 1 for y, 2 for z.
+        for [a, b, c, d] in [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]] {
+            for triangle in [[a, b, c], [a, c, d]] {
+                for p in clipped(&triangle.map(|i: usize| corners[i]), &frustum) {
+                    extent.tan = extent.tan.max((p.truncate() / p.z).abs());
+                    extent.near = extent.near.min(p.z);
+                }
+            }
+        }
+        extent
+    }
 }
 
 /// The part of the map that visible surfaces take.
@@ -170,17 +221,16 @@ struct Seen {
 impl Seen {
     const EMPTY: Seen = Seen { low: Vec2::INFINITY, high: Vec2::NEG_INFINITY, far_q: f32::INFINITY, near_q: 0.0 };
 
-    /// Adds the part of a triangle that lies within the view's frustum.
-    fn add(&mut self, corners: [Vec3; 3], view_planes: &[Vec4], light: &RectLight) {
-        for p in clipped(&corners, view_planes) {
-            let l = light.light_from_world(p);
-            if l.z > 0.0 {
-                let t = (l.truncate() / l.z).clamp(Vec2::splat(-MAX_TAN), Vec2::splat(MAX_TAN));
-                self.low = self.low.min(t);
-                self.high = self.high.max(t);
-                self.far_q = self.far_q.min(1.0 / l.z);
-                self.near_q = self.near_q.max(1.0 / l.z);
-            }
+    /// Adds a polygon in world space, or the part of it that lies within a frustum from the light.
+    fn add(&mut self, polygon: &[Vec3], light: &RectLight, tan_half: Option<Vec2>) {
+        let in_light: Vec<Vec3> = polygon.iter().map(|p| light.light_from_world(*p)).collect();
+        let tan = tan_half.unwrap_or(Vec2::splat(MAX_TAN));
+        for l in clipped(&in_light, &window(-tan, tan, f32::MIN_POSITIVE)) {
+            let t = l.truncate() / l.z;
+            self.low = self.low.min(t);
+            self.high = self.high.max(t);
+            self.far_q = self.far_q.min(1.0 / l.z);
+            self.near_q = self.near_q.max(1.0 / l.z);
         }
     }
 
@@ -199,8 +249,6 @@ struct DeepestSurface {
     cells: LightGrid,
     /// Inverse distance as an affine function of the tangent: (x, y, constant); infinite where there is nothing.
     planes: Vec<Vec3>,
-    /// Of the nearest surface of all.
-    nearest_q: f32,
 }
 
 impl DeepestSurface {
@@ -208,15 +256,12 @@ impl DeepestSurface {
         let nothing = Vec3::new(0.0, 0.0, f32::INFINITY);
         // Shadows reach visible surfaces from casters that project a little beside them.
         let cells = LightGrid::over(seen.low, seen.high);
-        DeepestSurface { cells, planes: vec![nothing; LightGrid::COUNT], nearest_q: 0.0 }
+        DeepestSurface { cells, planes: vec![nothing; LightGrid::COUNT] }
     }
 
-    fn add(&mut self, corners: [Vec3; 3], receiver_only: bool) {
+    fn add(&mut self, corners: [Vec3; 3]) {
         let Some(plane) = plane_of(&corners) else { return };
         let polygon = clipped(&corners, &self.cells.border());
-        if !receiver_only {
-            self.nearest_q = polygon.iter().fold(self.nearest_q, |q, c| q.max(1.0 / c.z));
-        }
         let mut planes = std::mem::take(&mut self.planes);
         self.cells.for_each(&polygon, |cell, t| {
             if plane.dot(t.extend(1.0)) < planes[cell].dot(t.extend(1.0)) {
@@ -226,13 +271,12 @@ impl DeepestSurface {
         self.planes = planes;
     }
 
-    /// Half the frustum that holds a caster and the shadow that it casts on the deepest surface; 0 if it casts on
-    /// nothing that the grid covers.
-    fn reach_of_caster(&self, corners: [Vec3; 3], half_light: Vec2) -> Vec2 {
-        let mut reach = Vec2::ZERO;
+    /// Adds a caster and the shadow that it casts on the deepest surface, if it casts on anything that the grid covers.
+    fn cast(&self, corners: [Vec3; 3], half_light: Vec2, casting: &mut Casting) {
         let mut cast = |t: Vec2, q: f32, behind: f32| {
             if behind.is_finite() && q > behind * (1.0 + SEPARATION) {
-                reach = reach.max(t.abs() + half_light * (q - behind));
+                casting.reach = casting.reach.max(t.abs() + half_light * (q - behind));
+                casting.nearest_q = casting.nearest_q.max(q);
             }
         };
         let polygon = clipped(&corners, &self.cells.border());
@@ -245,7 +289,6 @@ impl DeepestSurface {
             self.cells
                 .for_each(&polygon, |cell, t| cast(t, plane.dot(t.extend(1.0)), self.planes[cell].dot(t.extend(1.0))));
         }
-        reach
     }
 
     /// Inverse distance of the deepest surface at a tangent, the smallest of the cells around it: a surface beyond the

@@ -27,14 +27,7 @@ impl LightGrid {
 
     /// Planes in light space around all cells, and a little in front of the light.
     pub fn border(&self) -> [Vec4; 5] {
-        let high = self.low + self.cell * SIDE as f32;
-        [
-            Vec4::new(0.0, 0.0, 1.0, -1e-5),
-            Vec4::new(1.0, 0.0, -self.low.x, 0.0),
-            Vec4::new(-1.0, 0.0, high.x, 0.0),
-            Vec4::new(0.0, 1.0, -self.low.y, 0.0),
-            Vec4::new(0.0, -1.0, high.y, 0.0),
-        ]
+        window(self.low, self.low + self.cell * SIDE as f32, LEAST_DISTANCE)
     }
 
     /// Calls with the number and the middle of each cell whose middle lies in a convex polygon in light space.
@@ -61,6 +54,20 @@ impl LightGrid {
             move |y: i32| (-reach..=reach).filter_map(move |dx| Some(y as usize * SIDE + inside(at.x, dx)? as usize));
         (-reach..=reach).filter_map(move |dy| inside(at.y, dy)).flat_map(of_row)
     }
+}
+
+/// Nothing is nearer to the light's plane, metres: distances are divided by.
+const LEAST_DISTANCE: f32 = 1e-9;
+
+/// Planes in light space around a range of tangents, from a distance on.
+pub(crate) fn window(low: Vec2, high: Vec2, near: f32) -> [Vec4; 5] {
+    [
+        Vec4::new(0.0, 0.0, 1.0, -near),
+        Vec4::new(1.0, 0.0, -low.x, 0.0),
+        Vec4::new(-1.0, 0.0, high.x, 0.0),
+        Vec4::new(0.0, 1.0, -low.y, 0.0),
+        Vec4::new(0.0, -1.0, high.y, 0.0),
+    ]
 }
 
 /// Triangles of a run: some milliseconds of work.
@@ -132,8 +139,8 @@ impl<'a> Iterator for Stages<'a> {
     }
 }
 
-/// The corners of the part of a triangle that lies on the upper side of all planes [Sutherland, Hodgman 1974].
-pub(crate) fn clipped(corners: &[Vec3; 3], planes: &[Vec4]) -> Vec<Vec3> {
+/// The corners of the part of a convex polygon that lies on the upper side of all planes [Sutherland, Hodgman 1974].
+pub(crate) fn clipped(corners: &[Vec3], planes: &[Vec4]) -> Vec<Vec3> {
     let distance = |p: &Vec3, plane: &Vec4| plane.dot(p.extend(1.0));
     if planes.iter().any(|plane| corners.iter().all(|c| distance(c, plane) < 0.0)) {
         return Vec::new();

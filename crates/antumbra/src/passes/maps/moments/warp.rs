@@ -1,7 +1,7 @@
 //! Meaning of the numbers in a moment map.
 
 use crate::gpu_struct;
-use crate::input::frame::BoundFrame;
+use crate::input::frame::Frame;
 use crate::input::frustum::ShadowFrustum;
 use glam::Vec2;
 
@@ -44,7 +44,7 @@ pub enum Nearest {
 impl DepthWarp {
     /// This warp over the range of a frame. Surfaces behind every receiver hide nothing, so they are clamped to the
     /// range's end.
-    pub fn over(self, frame: &BoundFrame, nearest: Nearest) -> DepthWarp {
+    pub fn over(self, frame: &Frame, nearest: Nearest) -> DepthWarp {
         let ShadowFrustum { receivers: [first, farthest], nearest_caster, .. } = frame.frustum;
         let nearest = match nearest {
             Nearest::Receiver => first,

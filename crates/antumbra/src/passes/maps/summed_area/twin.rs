@@ -91,7 +91,8 @@ fn errors(size: u32, sums: &[Sums]) -> Vec<[f64; 2]> {
         let output = storage_buffer(gpu, "means", u64::from(BOXES) * 4);
         let mut drawn = None;
         submit(|recorder| {
-            let depth = LightDepth::record(recorder, &renderer.frame, size, 1)?;
+            let frame = renderer.frame.bind(recorder)?;
+            let depth = LightDepth::record(recorder, &frame, size, 1)?;
             let warp = recorder.uniform("warp", &warp);
             let shape = TableShape { size, layers: 1, sums: *sums };
             let table = SummedArea::record(recorder, shape, &depth, "techniques::moments::vsm::warp", &warp)?;

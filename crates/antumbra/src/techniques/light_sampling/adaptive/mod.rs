@@ -187,9 +187,10 @@ impl AdaptiveSampling {
     }
 }
 
-/// The pixels in penumbra by one map from the light's centre.
+/// The pixels in penumbra by one map from the light's centre. It holds every texel that a caster touches: a wall that
+/// the centre sees edge-on hides much of the light from other points.
 fn penumbra_list(recorder: &mut Recorder, frame: &BoundFrame, size: u32) -> Result<PenumbraList, Error> {
-    let map = DepthMap::of_light(recorder, frame, size)?;
+    let map = DepthMap::record_touched(recorder, frame, "penumbra map", size)?;
     let pyramid = DepthPyramid::record(recorder, &map, frame.frustum.near)?;
     PenumbraList::record(recorder, frame, &map, &pyramid, Listing::default())
 }

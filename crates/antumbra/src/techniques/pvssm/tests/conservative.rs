@@ -53,9 +53,10 @@ fn no_texel_that_a_caster_touches_is_missed_and_none_far_from_all_is_drawn() {
         let [whole, plain] = [true, false].map(|conservative| {
             let mut map = None;
             submit(|recorder| {
+                let frame = frame.bind(recorder)?;
                 map = Some(match conservative {
-                    true => DepthMap::record_touched(recorder, frame, "low-resolution map", SIZE)?,
-                    false => DepthMap::of_light(recorder, frame, SIZE)?,
+                    true => DepthMap::record_touched(recorder, &frame, "low-resolution map", SIZE)?,
+                    false => DepthMap::of_light(recorder, &frame, SIZE)?,
                 });
                 Ok(())
             });

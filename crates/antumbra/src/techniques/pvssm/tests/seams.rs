@@ -17,7 +17,7 @@ const RESOLUTION: f32 = 256.0;
 /// The visibility if every cell needs the same resolution, and the number of tiles and rounds.
 fn with_constant_resolution(renderer: &SceneRenderer, tile: u32) -> (Vec<f32>, [u32; 2]) {
     let settings = PvssmSettings { map: 256, tile, rounds: 16, grid: 16, thrifty: false, ..PvssmSettings::default() };
-    let (frame, gpu) = (&renderer.frame, gpu());
+    let gpu = gpu();
     let nodes: u32 = (0..=4).map(|level| (16u32 >> level).pow(2)).sum();
     let mut stored = vec![0.0; 2 * nodes as usize];
     stored[..2 * 256].fill(RESOLUTION);
@@ -25,6 +25,7 @@ fn with_constant_resolution(renderer: &SceneRenderer, tile: u32) -> (Vec<f32>, [
     let pvssm = uniform(gpu, "pvssm", &PvssmUniform::new(&settings));
     let mut made = None;
     submit(|recorder| {
+        let frame = &renderer.frame.bind(recorder)?;
         let analysis = Analysis::record(recorder, frame, &settings, &pvssm)?;
         let plan = Plan::ask(recorder, &frame.casters, &settings, &pvssm);
         plan.decide(recorder, &grid, None)?;
