@@ -26,7 +26,7 @@ pub fn scene(args: &SceneArgs) -> Result<(Scene, [u32; 2]), Error> {
 pub fn gpu(args: &GpuArgs, size: [u32; 2]) -> Result<Gpu, Error> {
     let best = AdapterChoice::default();
     let gpu = block_on(Gpu::new(args.adapter.as_ref().unwrap_or(&best)))?;
-    gpu.check_size("picture", size[0], size[1])?;
+    gpu.check_size("image", size[0], size[1])?;
     // Errors outside of every error scope: by default they are a panic.
     gpu.device.on_uncaptured_error(Arc::new(|error| {
         eprintln!("error: the GPU failed unexpectedly: {error}");

@@ -21,7 +21,7 @@ const LIGHT_DISTANCE: f32 = 4.0;
 const LIGHT_EDGE: f32 = 1.0 / 8.0;
 /// Aspect ratio of the widest image that the ground fills.
 const WIDEST: f32 = 2.0;
-/// More vertices than this tell no more about where a model ends.
+/// Vertices by which a large model is framed, at most.
 const SAMPLES: usize = 200_000;
 
 impl Model {
@@ -63,7 +63,7 @@ impl Model {
 
     fn add_ground(&mut self, bounds: &Aabb, camera: &Camera) {
         let middle = bounds.center();
-        // A model that is flat itself would fight with a ground at its very height.
+        // A flat model at the height of the ground would z-fight with it.
         let radius = radius_of(bounds);
         let flat = bounds.size().y < 1e-3 * radius;
         let y = bounds.min.y - if flat { 0.01 * radius } else { 0.0 };

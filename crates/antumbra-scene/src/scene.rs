@@ -29,7 +29,7 @@ pub struct Scene {
     pub camera: Camera,
     /// The light.
     pub light: RectLight,
-    /// Picture size in pixels, if the file asks for one.
+    /// Image size in pixels, if the file asks for one.
     pub size: Option<(u32, u32)>,
 }
 

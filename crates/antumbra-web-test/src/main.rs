@@ -162,7 +162,7 @@ fn error_of(state: &Value, spec: &str) -> Outcome<f64> {
 /// Comparison with the program for the same scene and size.
 fn compare(state: &Value, specs: &[String], errors: &[f64]) -> Outcome<()> {
     let report = tempfile::tempdir().map_err(|e| e.to_string())?;
-    let size = format!("{}x{}", state["image"][0], state["picture"][1]);
+    let size = format!("{}x{}", state["image"][0], state["image"][1]);
     let folder = report.path().to_string_lossy().into_owned();
     let mut arguments = vec!["compare", SCENE, "--size", &size, "-o", &folder];
     arguments.extend(specs.iter().flat_map(|spec| ["-t", spec]));

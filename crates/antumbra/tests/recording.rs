@@ -142,12 +142,12 @@ fn every_pass_of_a_technique_is_timed_under_the_label_that_its_memory_bears() {
 fn sizes_that_the_device_cannot_hold_are_refused() {
     let max = gpu().capabilities.max_texture_size;
     for (width, height) in [(0, 4), (4, 0), (max + 1, 4), (4, u32::MAX)] {
-        let error = gpu().check_size("picture", width, height).expect_err("must be refused").to_string();
-        for part in ["picture", &width.to_string(), &height.to_string(), &max.to_string()] {
+        let error = gpu().check_size("image", width, height).expect_err("must be refused").to_string();
+        for part in ["image", &width.to_string(), &height.to_string(), &max.to_string()] {
             assert!(error.contains(part), "{error} lacks {part}");
         }
     }
-    assert!(gpu().check_size("picture", 1, max).is_ok());
+    assert!(gpu().check_size("image", 1, max).is_ok());
     let scene = builtin("square");
     assert!(antumbra::scene::SceneRenderer::new(gpu(), &scene, [0, 5]).is_err());
     assert!(antumbra::scene::SceneRenderer::new(gpu(), &scene, [max + 1, 5]).is_err());

@@ -220,7 +220,7 @@ impl Report {
             last = Some(section);
         }
         text + &format!(
-            "\nPlots and pictures are in `{suite}.html`, every measurement in `{suite}.csv` and `{suite}.json`.\n"
+            "\nPlots and images are in `{suite}.html`, every measurement in `{suite}.csv` and `{suite}.json`.\n"
         )
     }
 }

@@ -16,7 +16,7 @@ pub enum ReportError {
         source: io::Error,
     },
     /// The size of an image differs from the report's.
-    #[error("the {image} of `{spec}` is not {width} x {height} like the report's other pictures")]
+    #[error("the {image} of `{spec}` is not {width} x {height} like the report's other images")]
     Size {
         /// Kind of the image.
         image: &'static str,
@@ -28,7 +28,7 @@ pub enum ReportError {
         height: u32,
     },
     /// An image cannot be encoded.
-    #[error("cannot encode a picture as PNG: {0}")]
+    #[error("cannot encode an image as PNG: {0}")]
     Png(#[from] image::ImageError),
     /// The results cannot be encoded as JSON.
     #[error("cannot write the figures as JSON: {0}")]

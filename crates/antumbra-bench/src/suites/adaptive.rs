@@ -73,7 +73,7 @@ const SETUPS: [Setup; 4] = [
     Setup { name: "large penumbra", place: "with a large one", builtin: "layers", arrange: |_| (), paper: None },
     Setup {
         name: "penumbra everywhere",
-        place: "where it fills the picture",
+        place: "where it fills the image",
         builtin: "fence",
         arrange: |scene| {
             look(scene, [0.6, 1.3, 2.3], [-0.8, 0.0, 0.75], 45.0);

@@ -1,4 +1,4 @@
-//! Pictures for textures: PNG and JPEG.
+//! Images for textures: PNG and JPEG.
 
 use crate::{Material, Texture};
 use image::{ImageFormat, ImageReader, Limits, RgbaImage};

@@ -24,7 +24,7 @@ fn fingers(page: &mut Page, from: &[[f64; 2]], to: &[[f64; 2]]) -> Outcome<()> {
     Ok(())
 }
 
-/// Along the target, the eye goes round.
+/// One finger moves the eye around the target.
 pub fn one_finger_turns(page: &mut Page) -> Outcome<String> {
     page.open(QUERY)?;
     let [eye, target] = camera(&page.settled()?)?;

@@ -21,7 +21,7 @@ fn light_above_horizon(normal: DVec3, position: DVec3, half: DVec2) -> f64 {
 /// Error bound of the formula: the narrower of the two directions counts as a hundredth of the other.
 const CLAMPED: f64 = 1.0 / 800.0;
 
-/// The same by another road: the rectangle cut by the plane, and the area of the rest [Sutherland, Hodgman 1974].
+/// The same by clipping: the area of the rectangle above the plane [Sutherland, Hodgman 1974].
 fn clipped_area(normal: DVec3, position: DVec3, half: DVec2) -> f64 {
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, y)| DVec2::new(x, y) * half);
     let side = |p: DVec2| normal.dot(p.extend(0.0) - position);
@@ -41,7 +41,7 @@ fn clipped_area(normal: DVec3, position: DVec3, half: DVec2) -> f64 {
 }
 
 /// Receivers near the light's plane and far from it, lights from a millimetre to ten metres, planes of all slopes;
-/// every fourth passes through the light, every eighth stands square to one of its edges.
+/// every fourth passes through the light, every eighth is perpendicular to one of its edges.
 fn inputs(count: usize) -> Vec<(Vec3, Vec3, Vec2)> {
     let mut random = Random(7);
     (0..count)
@@ -70,8 +70,8 @@ const KERNEL: &str = "
         output[to] = light_above_horizon(normal, position, vec2(input[at + 6u], input[at + 7u]));
     }";
 
-/// The largest difference between the GPU and a twin. An error of the plane's height by rounding is forgiven: it moves
-/// the fraction by as much as the height is wrong, measured in the light's extent across the plane.
+/// The largest difference between the GPU and a twin. The rounding error of the plane's height, relative to the light's
+/// extent across the plane, is subtracted.
 fn worst_on_gpu(twin: impl Fn(DVec3, DVec3, DVec2) -> f64) -> Worst {
     let inputs = inputs(8192);
     let words = |(n, p, h): &(Vec3, Vec3, Vec2)| [n.x, n.y, n.z, p.x, p.y, p.z, h.x, h.y];

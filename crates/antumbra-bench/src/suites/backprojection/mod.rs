@@ -68,7 +68,7 @@ fn groups(runner: &Runner, configurations: &[Configuration]) -> Result<[Vec<Expe
     let of_maps = drawn().flat_map(|spec| cost::MAPS.map(|map| with_map(spec, map)));
     let maps = Experiment::new("maps", builtin::build(PLAIN)?, half, of_maps)?;
     let images = SIDES.into_iter().map(|side| {
-        let name = format!("picture {}/{}", side.0, side.1);
+        let name = format!("image {}/{}", side.0, side.1);
         Experiment::new(name, builtin::build(PLAIN)?, scaled(size, side), drawn())
     });
     let triangles = TREES.into_iter().map(|trees| {

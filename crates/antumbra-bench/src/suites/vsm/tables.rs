@@ -26,9 +26,9 @@ const FPS_BY_MAP: [[f64; 4]; 6] = [
     [22.0, 22.0, 22.0, 21.0],
     [254.0, 225.0, 154.0, 63.0],
 ];
-const PICTURES: [[u32; 2]; 4] = [[640, 480], [800, 600], [1024, 768], [1280, 960]];
+const IMAGES: [[u32; 2]; 4] = [[640, 480], [800, 600], [1024, 768], [1280, 960]];
 /// The same for these image sizes and a map of 512.
-const FPS_BY_PICTURE: [[f64; 4]; 6] = [
+const FPS_BY_IMAGE: [[f64; 4]; 6] = [
     [470.0, 470.0, 314.0, 210.0],
     [457.0, 309.0, 209.0, 133.0],
     [450.0, 334.0, 228.0, 159.0],
@@ -45,14 +45,14 @@ const FULL: u32 = 1024;
 pub fn names() -> Vec<(String, Vec<String>)> {
     let specs = |map| ROWS.iter().map(|(_, spec)| with_map(spec, map)).collect::<Vec<_>>();
     let by_map = MAPS.map(|map| (format!("map {map}"), specs(map)));
-    let by_picture = PICTURES.map(|[w, h]| (format!("picture {w} x {h}"), specs(512)));
-    by_map.into_iter().chain(by_picture).collect()
+    let by_image = IMAGES.map(|[w, h]| (format!("image {w} x {h}"), specs(512)));
+    by_map.into_iter().chain(by_image).collect()
 }
 
 pub fn experiments(runner: &Runner) -> Result<Vec<Experiment>, Error> {
     // A smaller --size reduces all images by the same factor.
     let factor = f64::from(runner.size([FULL, 768])[0]) / f64::from(FULL);
-    let sizes = [[FULL, 768]; 4].into_iter().chain(PICTURES);
+    let sizes = [[FULL, 768]; 4].into_iter().chain(IMAGES);
     let experiment = |((name, specs), size): ((String, Vec<String>), [u32; 2])| {
         let size = size.map(|side| ((f64::from(side) * factor).round() as u32).max(1));
         Ok(Experiment::new(name, builtin::build(SCENE)?, size, specs)?.with_point_light())
@@ -71,12 +71,12 @@ const SHARED_PASSES: [(&str, &str, &str); 6] = [
 ];
 
 pub fn sections(trials: &[Trial]) -> Vec<Section> {
-    let [by_map, by_picture] = split(trials, [MAPS.len(), PICTURES.len()]);
+    let [by_map, by_image] = split(trials, [MAPS.len(), IMAGES.len()]);
     let maps = "One image size, maps of 128 to 1024 texels per side.";
-    let pictures = "A map of 512 texels, images of 640 x 480 to 1280 x 960.";
+    let images = "A map of 512 texels, images of 640 x 480 to 1280 x 960.";
     vec![
         section("Size of the map", by_map, &FPS_BY_MAP, maps),
-        section("Size of the picture", by_picture, &FPS_BY_PICTURE, pictures),
+        section("Size of the image", by_image, &FPS_BY_IMAGE, images),
     ]
 }
 

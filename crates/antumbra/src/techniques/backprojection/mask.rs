@@ -52,12 +52,12 @@ impl Rect {
     }
 }
 
-/// Row of points y of Hammersley's set of `n`, by x: each as its index, the place is (index + 1/2) / n.
+/// For each column of Hammersley's set of `n` points the row of its point. Column and row i lie at (i + 1/2) / n.
 fn rows_of_points(n: u32) -> Vec<u32> {
     (0..n).map(|i| i.reverse_bits() >> (32 - n.trailing_zeros())).collect()
 }
 
-/// Hammersley's points by their definition, with no regard to words and bits.
+/// Hammersley's points by their definition.
 fn points(n: u32) -> Vec<DVec2> {
     let place = |i: u32| (f64::from(i) + 0.5) / f64::from(n);
     rows_of_points(n).iter().zip(0..).map(|(y, x)| DVec2::new(place(x), place(*y))).collect()
@@ -67,7 +67,7 @@ fn covered(points: &[DVec2], rects: &[Rect]) -> u32 {
     points.iter().filter(|p| rects.iter().any(|r| r.contains(**p))).count() as u32
 }
 
-/// Area of the light under some rectangles: the cells between all their edges that any of them covers.
+/// Area of the union of rectangles on the light: the sum of the cells between all their edges that any of them covers.
 fn union_area(rects: &[Rect]) -> f64 {
     let rects: Vec<Rect> = rects.iter().map(Rect::on_light).collect();
     let edges = |axis: usize| {
@@ -92,15 +92,15 @@ fn worst_rectangle(n: u32) -> f64 {
         let mut filled = vec![false; rows.len()];
         for last in first..rows.len() {
             filled[rows[last] as usize] = true;
-            // Excess: from the first point to the last, edges included, with nothing beyond.
+            // Excess: the rectangle ends at its outermost points.
             let width = (last - first) as f64 / f64::from(n);
             let mut run = 0.0f64;
             for row in &filled {
-                // A row more is a step of 1/n in height; the first row of a run has none.
+                // Each row after the first adds 1/n to the height.
                 run = (run - width).max(0.0) + f64::from(u8::from(*row));
                 worst = worst.max(run);
             }
-            // Lack: as wide and high as it can be without a point more; at the light's border half a step.
+            // Lack: the rectangle extends to the next points outside of it, or to the light's border, half a step away.
             let step = |inside: bool| if inside { 1.0 } else { 0.5 };
             let width = (width * f64::from(n) + step(first > 0) + step(last + 1 < rows.len())) / f64::from(n);
             let mut run = 0.0f64;

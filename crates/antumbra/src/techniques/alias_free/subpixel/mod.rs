@@ -9,7 +9,7 @@
 //! 4. The shadow of each triangle on each facet, as a mask of samples made of half-planes from a table; masks are fused.
 //! 5. The filtered result.
 //!
-//! [docs/subpixel.md](https://github.com/antumbra/antumbra/blob/main/docs/subpixel.md) has the details.
+//! [docs/techniques/subpixel.md](https://github.com/antumbra/antumbra/blob/main/docs/techniques/subpixel.md) has the details.
 
 pub(crate) mod capacity;
 mod half_planes;
