@@ -27,12 +27,13 @@ fn placed([x, y]: [u32; 2], edge: f32) -> Scene {
     let (right, up, forward) = light.basis();
     let tangent = |i: u32| ((2 * i + 1) as f32 / PLACES as f32 - 1.0) * (0.5 * FOV_DEG).to_radians().tan();
     let ray = forward + tangent(x) * right + tangent(y) * up;
-    // At this height a place is about twice as wide as the box.
+    // At this height a place is a little wider than the box.
     let at = |height: f32| light.center + ray * ((height - light.center.y) / ray.y);
     let (middle, shadow) = (at(0.25), at(0.0));
-    let half = 0.05 * (middle - light.center).length() / 3.0;
+    let half = 0.11 * (middle - light.center).length() / 3.0;
     let caster = cuboid((middle - half).to_array(), (middle + half).to_array());
-    let eye = shadow + Vec3::new(0.35, 1.1, 0.6);
+    // From the side away from the light, where the box hides nothing of its shadow.
+    let eye = shadow + Vec3::new(-0.5, 1.4, -0.4);
     scene(vec![ground(6.0), caster], camera(eye.to_array(), shadow.to_array(), 40.0), light)
 }
 
@@ -100,40 +101,60 @@ fn report(placements: &[Placement]) {
     }
 }
 
-/// What is lost or invented: less than half of the truth's shadow, or more than twice as much.
-fn faults(placements: &[Placement]) -> Vec<String> {
-    let wrong = placements.iter().filter(|p| !(0.5..2.0).contains(&p.darkness));
-    wrong.map(|p| format!("{} in {:?}, light {} m: {:.2} of the shadow", p.spec, p.place, p.edge, p.darkness)).collect()
+/// What is lost or invented: less than half of the truth's shadow, or more than three times as much. In a map of 17
+/// texels the box is a texel or two wide, and the kernels of filterable maps are wider.
+fn check(placements: &[Placement]) {
+    report(placements);
+    let filterable = ["vsm", "evsm", "msm", "esm", "csm", "savsm", "vssm", "cssm"];
+    let is_wide = |p: &Placement| filterable.iter().any(|name| p.spec.starts_with(&format!("{name}:map=17")));
+    let wrong = placements.iter().filter(|p| !is_wide(p) && !(0.5..3.0).contains(&p.darkness));
+    let place =
+        |p: &Placement| format!("{} in {:?}, light {} m: {:.2} of the shadow", p.spec, p.place, p.edge, p.darkness);
+    let faults: Vec<String> = wrong.map(place).collect();
+    assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), placements.len(), faults.join("\n"));
 }
 
-/// Every technique and map in one place, and in the corners, where levels end; the places go round.
+/// Every technique in one place of a map, a third of them in the last corner, where levels end.
 #[test]
-fn nothing_is_lost_in_one_place_of_each_map() {
+fn nothing_is_lost_in_one_place() {
     let (mut truths, mut placements, mut turn) = (Truths::default(), Vec::new(), 0);
-    for map in MAPS {
+    for map in [MAPS[0], MAPS[1], MAPS[2], MAPS[5]] {
         for spec in specs(map) {
             let place = if turn % 3 == 0 { [PLACES - 1; 2] } else { [7 - turn % 3, turn / 3 % PLACES] };
             placements.push(truths.placement(spec, place, LIGHTS[turn as usize % 2]));
             turn += 5;
         }
     }
-    report(&placements);
-    let faults = faults(&placements);
-    assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), placements.len(), faults.join("\n"));
+    check(&placements);
 }
 
-#[test]
-#[ignore = "all places: an hour"]
-fn nothing_is_lost_in_any_place() {
+/// Every technique in every place of a map.
+fn in_all_places(map: u32) {
     let (mut truths, mut placements) = (Truths::default(), Vec::new());
-    for map in MAPS {
-        for spec in specs(map) {
-            for place in (0..PLACES * PLACES).map(|i| [i % PLACES, i / PLACES]) {
-                placements.extend(LIGHTS.map(|edge| truths.placement(spec.clone(), place, edge)));
-            }
+    for spec in specs(map) {
+        for place in (0..PLACES * PLACES).map(|i| [i % PLACES, i / PLACES]) {
+            placements.extend(LIGHTS.map(|edge| truths.placement(spec.clone(), place, edge)));
         }
     }
-    report(&placements);
-    let faults = faults(&placements);
-    assert!(faults.is_empty(), "{} of {}:\n{}", faults.len(), placements.len(), faults.join("\n"));
+    check(&placements);
+}
+
+macro_rules! all_places {
+    ($($name:ident: $map:expr,)*) => {
+        $(#[test]
+        #[ignore = "ten minutes or more"]
+        fn $name() {
+            in_all_places(MAPS[$map]);
+        })*
+    };
+}
+
+all_places! {
+    all_places_of_a_map_of_17: 0,
+    all_places_of_a_map_of_100: 1,
+    all_places_of_a_map_of_768: 2,
+    all_places_of_a_map_of_1000: 3,
+    all_places_of_a_map_of_1536: 4,
+    all_places_of_a_map_of_1537: 5,
+    all_places_of_a_map_of_3072: 6,
 }

@@ -47,8 +47,8 @@ pub(super) struct Patches {
     pub shape: SsmUniform,
     /// `Rg32Float`: covered fraction and inverse distance.
     patches: Texture,
-    /// `R32Float`: the largest inverse distance of each tile.
-    tile_tops: Texture,
+    /// `Rgba32Float`: the largest, smallest and mean inverse distance of each tile, and its covered fraction.
+    tiles: Texture,
     /// Counts of the frame; see [`Ssm`](super::Ssm).
     pub totals: wgpu::Buffer,
     uniform: wgpu::Buffer,
@@ -89,12 +89,14 @@ impl Patches {
         let shape = SsmUniform::new(frame, settings);
         let help =
             "covered fraction of each micro-patch and its inverse distance, 1/metres; a mip level for each level";
-        let (tops, rest) =
-            ("largest inverse distance of each tile, 1/metres", "sums of the patches that move up a level");
+        let (tiles, rest) = (
+            "largest, smallest and mean inverse distance of each tile, 1/metres, and its covered fraction",
+            "sums of the patches that move up a level",
+        );
         let levels = (0..2 * shape.levels).map(|i| SsmLevel { level: i / 2, layer: i % 2 });
         let patches = Patches {
             patches: recorder.texture("micro-patches", shape.texture(1, wgpu::TextureFormat::Rg32Float, help)),
-            tile_tops: recorder.texture("nearest patches", shape.texture(TILE, wgpu::TextureFormat::R32Float, tops)),
+            tiles: recorder.texture("tiles of patches", shape.texture(TILE, wgpu::TextureFormat::Rgba32Float, tiles)),
             totals: recorder.buffer("patch totals", BufferDescription::new(TOTALS).cleared()),
             uniform: recorder.uniform("soft shadow map", &shape),
             levels: recorder.uniforms("patch levels", levels),
@@ -118,8 +120,8 @@ impl Patches {
         let first = recorder.gpu.compute_pipeline(&key.clone().feature("first", true), "raise")?;
         let next = recorder.gpu.compute_pipeline(&key, "raise")?;
         for level in 0..shape.levels {
-            let [level_patches, level_tops, level_rising] =
-                [&patches.patches, &patches.tile_tops, &rising].map(|texture| texture.array_mip(level));
+            let [level_patches, level_tiles, level_rising] =
+                [&patches.patches, &patches.tiles, &rising].map(|texture| texture.array_mip(level));
             let below = rising.array_mip(level.saturating_sub(1));
             let step = patches.level(level, 0);
             let set = bindings! {
@@ -127,7 +129,7 @@ impl Patches {
                 ssm: &patches.uniform,
                 totals: &patches.totals,
                 level_patches: &level_patches,
-                level_tops: &level_tops,
+                level_tiles: &level_tiles,
                 level_rising: &level_rising,
                 rising: &below,
             };
@@ -159,7 +161,7 @@ impl Patches {
         binding_array! {
             depth_map: &maps.receivers.texture,
             patches: &self.patches,
-            tile_tops: &self.tile_tops,
+            patch_tiles: &self.tiles,
             ssm: &self.uniform,
             totals: &self.totals,
         }
