@@ -34,6 +34,8 @@ const MAX_ELONGATION: f32 = 4.0;
 
 /// Distance of the nearest surface that counts, as a part of the farthest, where nothing nearer is known.
 const NEAREST: f32 = 1e-3;
+/// The same of receivers around the light.
+const NEAREST_RECEIVER: f32 = 0.02;
 
 /// A caster must be nearer to the light than the deepest surface behind it by this part of its distance.
 const SEPARATION: f32 = 2e-3;
@@ -51,16 +53,20 @@ impl ShadowFrustum {
         let bounds = if bounds.is_empty() { &nothing } else { bounds };
         let extent = Extent::of_box(light, bounds);
         let far = if extent.far > 0.0 { extent.far } else { 1.0 };
-        // A light inside of the box may have surfaces anywhere around it.
-        let nearest = if bounds.contains(light.center) { 0.0 } else { extent.near.min(far) };
-        let nearest = nearest.max(NEAREST * far);
+        // A light inside of the box may have casters anywhere around it. Receivers are rarely as near, and maps from
+        // other points of the light are wider for them.
+        let inside = bounds.contains(light.center);
+        let [nearest, receiver] = [NEAREST, NEAREST_RECEIVER].map(|part| match inside {
+            true => part * far,
+            false => extent.near.clamp(NEAREST * far, far),
+        });
         ShadowFrustum {
             tan_half: match light.shadow_fov_deg {
                 Some(degrees) => tan_half_of(degrees),
                 None => (extent.tan * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN)),
             },
             near: near_of(nearest, far),
-            receivers: [nearest, far],
+            receivers: [receiver, far],
             nearest_caster: nearest,
         }
     }
