@@ -4,7 +4,7 @@ use super::bindings::Binding;
 use super::device::Gpu;
 use super::host_struct::HostStruct;
 use super::pipeline::{ComputePipeline, RenderPipeline, RenderTarget};
-use super::resources::{BufferDescription, Resources, UniformArray};
+use super::resources::{BufferDescription, Resources, UniformArray, make_known};
 use super::texture::{Texture, TextureDescription};
 use super::timer::Timer;
 use crate::error::Error;
@@ -65,7 +65,11 @@ impl<'a> Recorder<'a> {
 
     /// A texture, the same as in the last frame if that one fits.
     pub fn texture(&mut self, label: &'static str, description: TextureDescription) -> Texture {
-        self.resources.texture(self.gpu, label, description)
+        let (texture, is_new) = self.resources.texture(self.gpu, label, description);
+        if is_new && description.mips > 1 {
+            make_known(self.encoder(), std::iter::once(&texture));
+        }
+        texture
     }
 
     /// A storage buffer, the same as in the last frame if that one fits.

@@ -194,6 +194,11 @@ impl Resources {
                 }
             }
         }
+        let kept = self.entries.iter().filter(|e| e.asked == self.frame).filter_map(|e| match &e.content {
+            Content::Texture(texture, description) if description.mips > 1 => Some(texture),
+            _ => None,
+        });
+        make_known(encoder, kept);
         self.frame += 1;
         self.cursor = 0;
         self.unassigned.clear();
@@ -258,13 +263,20 @@ impl Resources {
         self.groups.get(&gpu.device, layout, sets, self.frame)
     }
 
-    pub(super) fn texture(&mut self, gpu: &Gpu, label: &'static str, description: TextureDescription) -> Texture {
+    /// The texture, and whether it is new.
+    pub(super) fn texture(
+        &mut self,
+        gpu: &Gpu,
+        label: &'static str,
+        description: TextureDescription,
+    ) -> (Texture, bool) {
+        let before = self.made;
         let fits = |c: &Content| matches!(c, Content::Texture(_, known) if *known == description);
         let index = self
             .find(label, fits)
             .unwrap_or_else(|| self.add(label, Content::Texture(Texture::new(gpu, label, description), description)));
         match &self.entries[index].content {
-            Content::Texture(texture, _) => texture.clone(),
+            Content::Texture(texture, _) => (texture.clone(), self.made > before),
             _ => unreachable!("found as a texture"),
         }
     }
@@ -404,6 +416,18 @@ impl Resources {
             self.add(label, Content::Points(points.to_vec()));
         }
     }
+}
+
+/// Puts all mip levels of textures into a state that the encoder knows. wgpu 30 takes the last state of a level within
+/// a pass for its first where an earlier pass of the encoder used other levels only, and then misses a layout
+/// transition.
+pub(super) fn make_known<'a>(encoder: &mut wgpu::CommandEncoder, textures: impl Iterator<Item = &'a Texture>) {
+    let to_resource = |texture: &'a Texture| wgpu::TextureTransition {
+        texture: &texture.texture,
+        selector: None,
+        state: wgpu::TextureUses::RESOURCE,
+    };
+    encoder.transition_resources(std::iter::empty(), textures.map(to_resource));
 }
 
 /// A buffer that holds `bytes` from the start.

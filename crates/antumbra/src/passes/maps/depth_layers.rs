@@ -35,6 +35,8 @@ gpu_struct! {
         row: u32,
         /// Surfaces collected per texel.
         count: u32,
+        /// Layers that are stored: `textureNumLayers` of a storage texture is not valid SPIR-V with naga 30.
+        layers: u32,
         /// Surfaces less than this behind the first of a layer join it, in the unit of the depths.
         gap: f32,
     }
@@ -76,6 +78,7 @@ impl DepthLayers {
             size,
             row: size.next_multiple_of(64),
             count: collected_surfaces(recorder.gpu, size, layers, apart > 0.0)?,
+            layers,
             gap: frame.frustum.near * gap,
         };
         let bytes = 4 * u64::from(shape.row) * u64::from(size) * u64::from(shape.count);
