@@ -15,6 +15,7 @@
 //!   `map_*`.
 
 mod build;
+mod map;
 mod mtl;
 mod statements;
 
