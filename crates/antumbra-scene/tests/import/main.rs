@@ -1,9 +1,11 @@
 //! Every importer, on files that are built here byte by byte.
 
+mod far;
 mod framing;
 mod glb;
 mod gltf;
 mod gltf_bad;
+mod gltf_casts;
 mod load;
 mod log;
 mod mtl;
