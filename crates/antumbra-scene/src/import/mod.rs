@@ -1,5 +1,7 @@
 //! Importers: bytes to [`Model`]. Files that a file refers to are asked for by name, so nothing here needs a disk.
 
+// The modules that importers share have parts that only some of them use.
+#[cfg_attr(not(all(feature = "gltf", feature = "obj", feature = "scene-file")), allow(dead_code))]
 mod far;
 #[cfg(feature = "gltf")]
 pub mod gltf;
@@ -9,15 +11,20 @@ pub mod obj;
 pub mod ply;
 #[cfg(any(feature = "obj", feature = "ply"))]
 mod polygon;
+#[cfg_attr(not(all(feature = "gltf", feature = "obj", feature = "scene-file")), allow(dead_code))]
 pub(crate) mod text;
 #[cfg(any(feature = "gltf", feature = "obj"))]
 mod texture_file;
+#[cfg_attr(not(all(feature = "gltf", feature = "obj", feature = "scene-file")), allow(dead_code))]
 mod warnings;
 
 use crate::{Aabb, Camera, Instance, Material, Mesh, RectLight, SceneError};
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 
-pub(crate) use far::{Extent, Placed};
+#[cfg(any(feature = "gltf", feature = "obj", feature = "ply"))]
+pub(crate) use far::Extent;
+#[cfg(any(feature = "gltf", feature = "scene-file"))]
+pub(crate) use far::Placed;
 pub(crate) use warnings::Warnings;
 
 /// Gives the bytes of a file that the imported file refers to, by the name it uses.
@@ -101,7 +108,7 @@ impl Model {
         let (mesh_base, material_base) = (self.meshes.len(), self.materials.len());
         self.materials.extend(other.materials);
         self.meshes.extend(other.meshes.into_iter().map(|m| Mesh { material: m.material + material_base, ..m }));
-        let file_from_model = DAffine3::from_translation(other.origin);
+        let file_from_model = glam::DAffine3::from_translation(other.origin);
         let placed = |i: &Instance| Placed {
             mesh: i.mesh + mesh_base,
             world_from_object: file_from_model * i.world_from_object.as_daffine3(),
