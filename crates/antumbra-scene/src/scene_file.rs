@@ -53,6 +53,8 @@ pub(crate) fn read(
     model.warn_of_distance(name);
     model.camera = camera.map(|of| of(model.origin)).or(model.camera);
     model.light = light.map(|of| of(model.origin)).or(model.light);
+    check.apart("camera", "eye", model.camera.map(|c| [c.eye, c.target]))?;
+    check.apart("light", "center", model.light.map(|l| [l.center, l.target]))?;
     let origin = model.origin;
     Ok((Scene { size, ..model.framed(false) }, origin))
 }
@@ -199,6 +201,12 @@ impl Check<'_> {
         let problem = format!("it must not be zero or parallel to the direction from {from_key} to target");
         self.require(across > 1e-4, key("up"), &problem)?;
         Ok(up)
+    }
+
+    /// Checks that a view still has a direction in single precision.
+    fn apart(&self, table: &str, from_key: &str, view: Option<[Vec3; 2]>) -> Result<(), SceneError> {
+        let problem = format!("it is the same point as {from_key} in single precision");
+        self.require(view.is_none_or(|[from, target]| from != target), format!("{table}.target"), &problem)
     }
 
     /// The camera for an origin of the scene.

@@ -59,10 +59,11 @@ pub(crate) struct Placed {
 impl Model {
     /// Sets the instances, and moves all to a local origin where they lie far from the world's.
     pub(crate) fn place(&mut self, placed: &[Placed]) {
-        let extent = Extent::of(placed.iter().flat_map(|p| {
-            let mesh = &self.meshes[p.mesh];
-            mesh.indices.iter().map(|&k| p.world_from_object.transform_point3(mesh.positions[k as usize].as_dvec3()))
-        }));
+        // The corners of the meshes' boxes tell well enough how far the scene is from the origin.
+        let boxes: Vec<_> = self.meshes.iter().map(|m| m.bounds()).collect();
+        let shown = placed.iter().filter(|p| !boxes[p.mesh].is_empty());
+        let corners = |p: &Placed| boxes[p.mesh].corners().map(|c| p.world_from_object.transform_point3(c.as_dvec3()));
+        let extent = Extent::of(shown.flat_map(corners));
         self.origin = extent.local_origin();
         let instance = |p: &Placed| Instance {
             mesh: p.mesh,

@@ -2,7 +2,7 @@
 
 use crate::glb::Builder;
 use crate::log::logged;
-use crate::{assert_logged, no_files, triangles};
+use crate::{assert_logged, assert_says, no_files, triangles};
 use antumbra_scene::import::{Model, gltf, obj, ply};
 use antumbra_scene::scene_file::{self, Format};
 use antumbra_scene::{Scene, SceneError, load_placed};
@@ -170,6 +170,15 @@ fn a_scene_that_is_far_after_all_says_how_many_digits_are_left() {
     // A model that is far in its own file, beside one that is not.
     let (_, said) = scene(&format!("{text}[[meshes]]\npath = \"far.obj\"\n"));
     assert_logged(&said, &[&["s.toml, 2 places, the first is mesh \"a.obj\"", "digits"]]);
+}
+
+#[test]
+fn a_view_keeps_its_direction() {
+    let text = "[[meshes]]\npath = \"near.obj\"\n[camera]\neye = [131000.001, 0, 0]\ntarget = [131000, 0, 0]\n";
+    assert_says(scene(text).0, &["camera.target", "same point as eye in single precision"]);
+    let light = "center = [131000, 0, 0.001]\ntarget = [131000, 0, 0]\nsize = [1, 1]\n";
+    let text = format!("[[meshes]]\npath = \"near.obj\"\n[light]\n{light}");
+    assert!(scene(&text).0.is_ok(), "0.001 is apart from 0");
 }
 
 #[test]

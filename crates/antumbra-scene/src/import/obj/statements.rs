@@ -79,8 +79,8 @@ impl Reader<'_> {
         let numbers = line.split(|&b| b == b'#').next().unwrap_or_default();
         let mut words = numbers.split(|b| b.is_ascii_whitespace()).filter(|w| !w.is_empty());
         let Some(keyword) = words.next() else { return Ok(()) };
-        let small = keyword.to_ascii_lowercase();
-        match if keyword.iter().any(u8::is_ascii_uppercase) { &small } else { keyword } {
+        let capitals = keyword.iter().any(u8::is_ascii_uppercase).then(|| keyword.to_ascii_lowercase());
+        match capitals.as_deref().unwrap_or(keyword) {
             b"v" => self.position(words)?,
             b"vt" => {
                 let [u, v] = [self.number(words.next())?, words.next().map_or(Ok(0.0), |w| self.number(Some(w)))?];
