@@ -1,7 +1,8 @@
 //! Scene files: meshes from other files placed in the world, a camera and a light, in TOML or JSON.
 
 use crate::framing::{ground_material, up_for};
-use crate::import::{Model, Placed};
+use crate::import::Model;
+use crate::import::far::Placed;
 use crate::{Camera, Instance, Mesh, Place, RectLight, Scene, SceneError, builtin};
 use entries::{CameraEntry, LightEntry, MeshEntry, Scale, SceneEntry};
 use glam::{Affine3A, DAffine3, DQuat, DVec3, Vec2, Vec3};

@@ -1,7 +1,8 @@
 //! Models far from the origin, such as georeferenced ones: how many digits single precision leaves them, and moving
 //! them to a local origin in double precision.
 
-use super::{Model, Warnings};
+use super::Model;
+use super::warnings::Warnings;
 use crate::Instance;
 use glam::{Affine3A, DAffine3, DVec3, Vec3};
 

@@ -2,7 +2,7 @@
 
 // The modules that importers share have parts that only some of them use.
 #[cfg_attr(not(all(feature = "gltf", feature = "obj", feature = "scene-file")), allow(dead_code))]
-mod far;
+pub(crate) mod far;
 #[cfg(feature = "gltf")]
 pub mod gltf;
 #[cfg(feature = "obj")]
@@ -20,12 +20,6 @@ mod warnings;
 
 use crate::{Aabb, Camera, Instance, Material, Mesh, RectLight, SceneError};
 use glam::DVec3;
-
-#[cfg(any(feature = "gltf", feature = "obj", feature = "ply"))]
-pub(crate) use far::Extent;
-#[cfg(any(feature = "gltf", feature = "scene-file"))]
-pub(crate) use far::Placed;
-pub(crate) use warnings::Warnings;
 
 /// Gives the bytes of a file that the imported file refers to, by the name it uses.
 pub use crate::ReadFile;
@@ -104,12 +98,12 @@ impl Model {
     /// Takes in another model's meshes and materials and returns its instances, renumbered and in the coordinates of
     /// its file.
     #[cfg(feature = "scene-file")]
-    pub(crate) fn absorb(&mut self, other: Model) -> Vec<Placed> {
+    pub(crate) fn absorb(&mut self, other: Model) -> Vec<far::Placed> {
         let (mesh_base, material_base) = (self.meshes.len(), self.materials.len());
         self.materials.extend(other.materials);
         self.meshes.extend(other.meshes.into_iter().map(|m| Mesh { material: m.material + material_base, ..m }));
         let file_from_model = glam::DAffine3::from_translation(other.origin);
-        let placed = |i: &Instance| Placed {
+        let placed = |i: &Instance| far::Placed {
             mesh: i.mesh + mesh_base,
             world_from_object: file_from_model * i.world_from_object.as_daffine3(),
             receiver_only: i.receiver_only,

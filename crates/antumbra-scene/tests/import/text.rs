@@ -120,7 +120,7 @@ fn a_vertex_that_no_face_uses_may_be_no_point() {
 
 #[test]
 fn what_is_left_out_is_said_once_a_kind() {
-    let text = format!("{OBJ}p 1\nl 1 2\nf 1 2\nl 2 3\nshadow_obj low.obj\n");
+    let text = format!("{OBJ}p 1\nl 1 2\nf 1 2\nl 2 3\nshadow_obj low.obj\nusemap bark\n");
     let (_, said) = logged(|| read_obj(text.as_bytes(), MTL.as_bytes()));
     crate::assert_logged(
         &said,
@@ -128,6 +128,7 @@ fn what_is_left_out_is_said_once_a_kind() {
             &["a.obj, 3 places, the first is line 7", "points and lines"],
             &["a.obj, line 9", "fewer than 3 corners"],
             &["a.obj, line 11", "shadow_obj"],
+            &["a.obj, line 12", "usemap"],
         ],
     );
     let text =
@@ -135,6 +136,9 @@ fn what_is_left_out_is_said_once_a_kind() {
     let (_, said) =
         logged(|| ply::parse(text.replace("header\n0 0 0", "header\n0 0 0 9").as_bytes(), "a.ply").unwrap());
     crate::assert_logged(&said, &[&["a.ply, 2 places, the first is vertex 0", "alpha"]]);
+    let text = PLY.replace("by hand", "\ncomment TextureFile leaf.png");
+    let (_, said) = logged(|| ply::parse(text.as_bytes(), "a.ply").unwrap());
+    crate::assert_logged(&said, &[&["a.ply, the header", "textures are not read"]]);
     let text = PLY.replace("end_header", "element quad 2\nproperty list uchar int vertex_indices\nend_header");
     let (_, said) = logged(|| ply::parse(format!("{text}3 0 1 2\n3 0 1 2\n").as_bytes(), "a.ply").unwrap());
     crate::assert_logged(&said, &[&["a.ply, 2 places, the first is element \"quad\"", "only faces"]]);

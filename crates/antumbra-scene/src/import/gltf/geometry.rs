@@ -5,7 +5,7 @@ use super::cutout;
 use super::material::{Materials, UvSource};
 use super::pose::Pose;
 use super::{File, label};
-use crate::import::Extent;
+use crate::import::far::Extent;
 use crate::{Mesh, Place, SceneError};
 use glam::{DVec3, Vec2};
 use gltf_json::accessor::{ComponentType, Type};

@@ -20,7 +20,8 @@ mod pose;
 mod views;
 
 use super::text::{abridged, decoded};
-use super::{Model, ReadFile, Warnings};
+use super::warnings::Warnings;
+use super::{Model, ReadFile};
 use crate::{Place, SceneError};
 use buffers::Buffers;
 use gltf_json::{Index, Root, Value};

@@ -3,9 +3,11 @@
 use super::mtl::{Library, Paint};
 use super::statements::{Corner, Statements};
 use crate::Mesh;
+use crate::import::Model;
+use crate::import::far::Extent;
 use crate::import::polygon::Triangulator;
 use crate::import::texture_file::drop_idle_mask;
-use crate::import::{Extent, Model, Warnings};
+use crate::import::warnings::Warnings;
 use glam::{Affine2, DVec3, Vec2, Vec3};
 use indexmap::IndexSet;
 

@@ -1,7 +1,7 @@
 //! Arguments of `map_*`: options and a path.
 
 use super::mtl::with_slashes;
-use crate::import::Warnings;
+use crate::import::warnings::Warnings;
 use glam::{Affine2, Vec2};
 use image::RgbaImage;
 

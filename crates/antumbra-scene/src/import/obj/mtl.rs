@@ -2,7 +2,8 @@
 
 use super::map::Map;
 use super::statements::text_after;
-use crate::import::{ReadFile, Warnings, text, texture_file};
+use crate::import::warnings::Warnings;
+use crate::import::{ReadFile, text, texture_file};
 use crate::{Material, Texture, Wrap};
 use glam::{Affine2, Vec3};
 use image::{Rgba, RgbaImage};

@@ -1,6 +1,7 @@
 //! Statements of an OBJ file, read and checked.
 
-use crate::import::{Warnings, text};
+use crate::import::text;
+use crate::import::warnings::Warnings;
 use crate::{Place, SceneError};
 use glam::{DVec3, Vec2};
 use indexmap::IndexSet;
@@ -95,6 +96,7 @@ impl Reader<'_> {
             b"p" | b"l" => self.skip("points and lines cast no shadow and are left out"),
             b"curv" | b"curv2" | b"surf" => self.skip("free-form curves and surfaces are left out"),
             b"call" | b"csh" => self.skip("other files are not called; what they hold is left out"),
+            b"usemap" => self.skip("usemap is not read; only the textures of materials are"),
             b"shadow_obj" => self.skip("shadow_obj is not read; the surfaces themselves cast the shadow"),
             _ => {}
         }

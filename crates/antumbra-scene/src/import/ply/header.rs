@@ -89,6 +89,8 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
+    /// Textures that comments name, as several programs do.
+    pub textures: usize,
     /// Offset of the body.
     pub bytes: usize,
     /// Lines before the body.
@@ -102,7 +104,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Header, SceneError> {
         let (file, place) = (name.to_string(), Place::Line(line));
         SceneError::Malformed { file, place, problem: problem.to_string() }
     };
-    let (mut encoding, mut elements, mut at, mut number) = (None, Vec::new(), 0, 0);
+    let (mut encoding, mut elements, mut textures, mut at, mut number) = (None, Vec::new(), 0, 0, 0);
     let line_end = if bytes.starts_with(b"ply\r") && bytes.get(4) != Some(&b'\n') { b'\r' } else { b'\n' };
     for line in bytes.split_inclusive(|&b| b == line_end) {
         (at, number) = (at + line.len(), number + 1);
@@ -117,8 +119,9 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Header, SceneError> {
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
         if words == ["end_header"] {
             let encoding = encoding.ok_or_else(|| malformed(number, "the header has no `format` line"))?;
-            return Ok(Header { encoding, elements, bytes: at, lines: number, line_end });
+            return Ok(Header { encoding, elements, textures, bytes: at, lines: number, line_end });
         }
+        textures += usize::from(words.starts_with(&["comment", "TextureFile"]));
         statement(&words, &mut encoding, &mut elements).map_err(|problem| malformed(number, &problem))?;
     }
     Err(malformed(number.max(1), "the header has no `end_header`; the file is not PLY or cut off"))

@@ -14,8 +14,10 @@
 mod body;
 mod header;
 
+use super::far::Extent;
 use super::polygon::Triangulator;
-use super::{Extent, Model, Warnings, text};
+use super::warnings::Warnings;
+use super::{Model, text};
 use crate::{Material, Mesh, Place, SceneError};
 use body::Body;
 use glam::DVec3;
@@ -29,6 +31,13 @@ pub fn parse(bytes: &[u8], name: &str) -> Result<Model, SceneError> {
     let bytes = &text::decoded(bytes)[..];
     let header = header::read(bytes, name)?;
     let warnings = Warnings::new(name);
+    if header.textures > 0 {
+        warnings.add_many(
+            header.textures,
+            "the header",
+            "textures are not read; faces that they mask cast whole shadows",
+        );
+    }
     let mut body = Body::new(bytes, &header, name);
     let mut surface = Surface::default();
     for element in &header.elements {
