@@ -28,7 +28,10 @@ impl Model {
     /// A whole scene. Missing camera, light and ground are chosen from the model: a camera that sees it in
     /// three-quarter view, a light from above and from the camera's left, and for a model with neither camera nor light
     /// a ground to stand on, which takes shadows and casts none.
+    ///
+    /// The scene's origin is the model's: see [`Model::origin`].
     pub fn into_scene(self) -> Scene {
+        self.warn_of_distance(&self.name);
         let bare = self.camera.is_none() && self.light.is_none();
         self.framed(bare)
     }

@@ -25,7 +25,7 @@ pub use bounds::Aabb;
 pub use camera::Camera;
 pub use error::{Place, SceneError};
 pub use light::RectLight;
-pub use load::{load, load_from};
+pub use load::{load, load_from, load_placed};
 pub use mesh::{Material, Mesh, Texture, Wrap};
 pub use read_file::ReadFile;
 pub use scene::{Instance, Scene};

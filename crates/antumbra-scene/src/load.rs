@@ -2,6 +2,7 @@
 
 use crate::read_file::ReadFile;
 use crate::{Scene, SceneError, builtin};
+use glam::DVec3;
 
 /// Loads the scene that an argument names: `builtin:NAME[:key=value,…]`, a model (`.glb`, `.gltf`, `.obj`, `.ply`) or a
 /// scene file (`.toml`, `.json`), in upper or lower case.
@@ -11,14 +12,20 @@ pub fn load(argument: &str) -> Result<Scene, SceneError> {
 
 /// The same with files that `read` gives: where there is no disk.
 pub fn load_from(argument: &str, read: &mut ReadFile) -> Result<Scene, SceneError> {
+    Ok(load_placed(argument, read)?.0)
+}
+
+/// The same with the point of the files' coordinates that is the scene's origin. It is 0 unless the scene lies so far
+/// away that it was moved; then whoever writes places for these files adds it.
+pub fn load_placed(argument: &str, read: &mut ReadFile) -> Result<(Scene, DVec3), SceneError> {
     match argument.strip_prefix("builtin:") {
-        Some(spec) => builtin::build(spec),
+        Some(spec) => Ok((builtin::build(spec)?, DVec3::ZERO)),
         None => load_file(argument, read),
     }
 }
 
 #[cfg(not(feature = "import"))]
-fn load_file(argument: &str, _read: &mut ReadFile) -> Result<Scene, SceneError> {
+fn load_file(argument: &str, _read: &mut ReadFile) -> Result<(Scene, DVec3), SceneError> {
     let message = "this program is built without file formats; use builtin:NAME".to_string();
     Err(SceneError::Argument { argument: argument.to_string(), message })
 }
@@ -27,23 +34,27 @@ fn load_file(argument: &str, _read: &mut ReadFile) -> Result<Scene, SceneError> 
 use files::load_file;
 #[cfg(feature = "import")]
 mod files {
-    use super::{ReadFile, Scene, SceneError, builtin};
+    use super::{DVec3, ReadFile, Scene, SceneError, builtin};
     use crate::import::{self, Model};
     use std::path::Path;
 
     const MODELS: &str = ".glb, .gltf, .obj or .ply";
 
-    pub(super) fn load_file(argument: &str, read: &mut ReadFile) -> Result<Scene, SceneError> {
+    pub(super) fn load_file(argument: &str, read: &mut ReadFile) -> Result<(Scene, DVec3), SceneError> {
         let path = Path::new(argument);
-        let mut scene = match extension(path).as_str() {
+        let (mut scene, origin) = match extension(path).as_str() {
             #[cfg(feature = "scene-file")]
             "toml" => load_scene_file(path, crate::scene_file::Format::Toml, read)?,
             #[cfg(feature = "scene-file")]
             "json" => load_scene_file(path, crate::scene_file::Format::Json, read)?,
-            _ => load_model(path, read)?.into_scene(),
+            _ => {
+                let model = load_model(path, read)?;
+                let origin = model.origin;
+                (model.into_scene(), origin)
+            }
         };
         scene.name = path.file_stem().map_or(argument.into(), |s| s.to_string_lossy().into_owned());
-        Ok(scene)
+        Ok((scene, origin))
     }
 
     fn extension(path: &Path) -> String {
@@ -55,11 +66,11 @@ mod files {
         path: &Path,
         format: crate::scene_file::Format,
         read: &mut ReadFile,
-    ) -> Result<Scene, SceneError> {
+    ) -> Result<(Scene, DVec3), SceneError> {
         let bytes = bytes_of(path, read)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_path_buf();
         let mut load = |mesh: &str| load_model(&folder.join(mesh), read);
-        crate::scene_file::parse(&bytes, format, &path.display().to_string(), &mut load)
+        crate::scene_file::read(&bytes, format, &path.display().to_string(), &mut load)
     }
 
     fn load_model(path: &Path, read: &mut ReadFile) -> Result<Model, SceneError> {

@@ -1,5 +1,8 @@
 //! Importers: bytes to [`Model`]. Files that a file refers to are asked for by name, so nothing here needs a disk.
 
+// The modules that importers share have parts that only some of them use.
+#[cfg_attr(not(all(feature = "gltf", feature = "obj", feature = "scene-file")), allow(dead_code))]
+pub(crate) mod far;
 #[cfg(feature = "gltf")]
 pub mod gltf;
 #[cfg(feature = "obj")]
@@ -8,10 +11,15 @@ pub mod obj;
 pub mod ply;
 #[cfg(any(feature = "obj", feature = "ply"))]
 mod polygon;
+#[cfg_attr(not(all(feature = "gltf", feature = "obj", feature = "scene-file")), allow(dead_code))]
+pub(crate) mod text;
 #[cfg(any(feature = "gltf", feature = "obj"))]
 mod texture_file;
+#[cfg_attr(not(all(feature = "gltf", feature = "obj", feature = "scene-file")), allow(dead_code))]
+mod warnings;
 
 use crate::{Aabb, Camera, Instance, Material, Mesh, RectLight, SceneError};
+use glam::DVec3;
 
 /// Gives the bytes of a file that the imported file refers to, by the name it uses.
 pub use crate::ReadFile;
@@ -29,6 +37,9 @@ pub struct Model {
     pub meshes: Vec<Mesh>,
     /// Materials of the meshes.
     pub materials: Vec<Material>,
+    /// Where the model's origin lies in the file's coordinates: 0, unless the model lies so far from there that single
+    /// precision would lose its shape. Instances, camera and light are relative to it.
+    pub origin: DVec3,
     /// Where the meshes stand.
     pub instances: Vec<Instance>,
     /// The file's camera. An infinite `far` is still to be fitted to the scene.
@@ -77,32 +88,26 @@ impl Model {
 
     /// A model whose meshes stand where their vertices are.
     #[cfg(any(feature = "obj", feature = "ply"))]
-    pub(crate) fn of_meshes(name: &str, meshes: Vec<Mesh>, materials: Vec<Material>) -> Model {
+    pub(crate) fn of_meshes(name: &str, meshes: Vec<Mesh>, materials: Vec<Material>, origin: DVec3) -> Model {
         let instances = (0..meshes.len())
             .map(|mesh| Instance { mesh, world_from_object: glam::Affine3A::IDENTITY, receiver_only: false })
             .collect();
-        Model { name: name.to_string(), meshes, materials, instances, camera: None, light: None }
+        Model { name: name.to_string(), meshes, materials, instances, origin, ..Model::default() }
     }
 
-    /// Takes in another model's meshes and materials and returns its instances, renumbered and not yet placed. Its
-    /// camera and light count only where there is none yet.
+    /// Takes in another model's meshes and materials and returns its instances, renumbered and in the coordinates of
+    /// its file.
     #[cfg(feature = "scene-file")]
-    pub(crate) fn absorb(&mut self, other: Model, place: &glam::Affine3A) -> Vec<Instance> {
+    pub(crate) fn absorb(&mut self, other: Model) -> Vec<far::Placed> {
         let (mesh_base, material_base) = (self.meshes.len(), self.materials.len());
         self.materials.extend(other.materials);
         self.meshes.extend(other.meshes.into_iter().map(|m| Mesh { material: m.material + material_base, ..m }));
-        self.camera = self.camera.or(other.camera.map(|c| Camera {
-            eye: place.transform_point3(c.eye),
-            target: place.transform_point3(c.target),
-            up: place.transform_vector3(c.up),
-            ..c
-        }));
-        self.light = self.light.or(other.light.map(|l| RectLight {
-            center: place.transform_point3(l.center),
-            target: place.transform_point3(l.target),
-            up: place.transform_vector3(l.up),
-            ..l
-        }));
-        other.instances.into_iter().map(|i| Instance { mesh: i.mesh + mesh_base, ..i }).collect()
+        let file_from_model = glam::DAffine3::from_translation(other.origin);
+        let placed = |i: &Instance| far::Placed {
+            mesh: i.mesh + mesh_base,
+            world_from_object: file_from_model * i.world_from_object.as_daffine3(),
+            receiver_only: i.receiver_only,
+        };
+        other.instances.iter().map(placed).collect()
     }
 }

@@ -1,4 +1,4 @@
-//! The keys of a scene file.
+//! The keys of a scene file. Places are in double precision, since a scene may lie far from the origin.
 
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 use std::fmt;
@@ -19,9 +19,9 @@ pub(super) struct MeshEntry {
     pub path: Option<String>,
     pub builtin: Option<String>,
     #[serde(default)]
-    pub translate: [f32; 3],
+    pub translate: [f64; 3],
     #[serde(default)]
-    pub rotate_deg: [f32; 3],
+    pub rotate_deg: [f64; 3],
     #[serde(default)]
     pub scale: Scale,
     #[serde(default)]
@@ -31,8 +31,8 @@ pub(super) struct MeshEntry {
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CameraEntry {
-    pub eye: [f32; 3],
-    pub target: [f32; 3],
+    pub eye: [f64; 3],
+    pub target: [f64; 3],
     pub up: Option<[f32; 3]>,
     #[serde(default = "default_fov")]
     pub fov_y_deg: f32,
@@ -47,8 +47,8 @@ fn default_fov() -> f32 {
 #[derive(serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct LightEntry {
-    pub center: [f32; 3],
-    pub target: [f32; 3],
+    pub center: [f64; 3],
+    pub target: [f64; 3],
     pub up: Option<[f32; 3]>,
     pub size: [f32; 2],
     pub shadow_fov_deg: Option<f32>,
@@ -57,8 +57,8 @@ pub(super) struct LightEntry {
 /// One number, or one an axis.
 #[derive(Clone, Copy)]
 pub(super) enum Scale {
-    Uniform(f32),
-    Axes([f32; 3]),
+    Uniform(f64),
+    Axes([f64; 3]),
 }
 
 impl Default for Scale {
@@ -84,15 +84,15 @@ impl<'de> Visitor<'de> for ScaleVisitor {
     }
 
     fn visit_f64<E: Error>(self, x: f64) -> Result<Scale, E> {
-        Ok(Scale::Uniform(x as f32))
+        Ok(Scale::Uniform(x))
     }
 
     fn visit_i64<E: Error>(self, x: i64) -> Result<Scale, E> {
-        Ok(Scale::Uniform(x as f32))
+        Ok(Scale::Uniform(x as f64))
     }
 
     fn visit_u64<E: Error>(self, x: u64) -> Result<Scale, E> {
-        Ok(Scale::Uniform(x as f32))
+        Ok(Scale::Uniform(x as f64))
     }
 
     fn visit_seq<A: SeqAccess<'de>>(self, mut numbers: A) -> Result<Scale, A::Error> {
@@ -100,7 +100,7 @@ impl<'de> Visitor<'de> for ScaleVisitor {
         for (i, axis) in axes.iter_mut().enumerate() {
             *axis = numbers.next_element()?.ok_or_else(|| A::Error::invalid_length(i, &self))?;
         }
-        match numbers.next_element::<f32>()? {
+        match numbers.next_element::<f64>()? {
             None => Ok(Scale::Axes(axes)),
             Some(_) => Err(A::Error::invalid_length(4, &self)),
         }

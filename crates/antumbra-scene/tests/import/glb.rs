@@ -18,7 +18,7 @@ impl Builder {
     pub fn new() -> Builder {
         let json = json!({
             "asset": {"version": "2.0"}, "buffers": [{"byteLength": 0}], "bufferViews": [], "accessors": [],
-            "meshes": [], "nodes": [], "materials": [], "textures": [], "images": [], "samplers": [], "cameras": [],
+            "meshes": [], "nodes": [], "materials": [], "textures": [], "images": [], "samplers": [], "cameras": [], "skins": [],
         });
         Builder { json, bytes: Vec::new() }
     }
@@ -45,7 +45,12 @@ impl Builder {
     }
 
     pub fn floats(&mut self, values: &[f32], kind: &str) -> usize {
-        let width = if kind == "VEC2" { 2 } else { 3 };
+        let width = match kind {
+            "VEC2" => 2,
+            "VEC3" => 3,
+            "VEC4" => 4,
+            _ => 16,
+        };
         self.accessor(&float_bytes(values), F32, kind, values.len() / width)
     }
 

@@ -1,13 +1,18 @@
 //! Every importer, on files that are built here byte by byte.
 
+mod far;
 mod framing;
 mod glb;
 mod gltf;
 mod gltf_bad;
+mod gltf_casts;
 mod load;
+mod log;
+mod mtl;
 mod obj;
 mod ply;
 mod scene_file;
+mod text;
 
 use antumbra_scene::SceneError;
 use antumbra_scene::import::Model;
@@ -39,5 +44,21 @@ fn assert_says<T: std::fmt::Debug>(result: Result<T, SceneError>, parts: &[&str]
     let message = result.expect_err("this should be refused").to_string();
     for part in parts {
         assert!(message.contains(part), "{part:?} is not in {message:?}");
+    }
+}
+
+/// A picture as a file.
+fn png(picture: image::RgbaImage) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    picture.write_to(&mut std::io::Cursor::new(&mut bytes), image::ImageFormat::Png).unwrap();
+    bytes
+}
+
+/// Asserts that there is one message for each list of parts, which it holds, in this order.
+#[track_caller]
+fn assert_logged(messages: &[String], expected: &[&[&str]]) {
+    assert_eq!(messages.len(), expected.len(), "{messages:#?}");
+    for (message, parts) in messages.iter().zip(expected) {
+        parts.iter().for_each(|part| assert!(message.contains(part), "{part:?} is not in {message:?}"));
     }
 }

@@ -1,6 +1,6 @@
 //! OBJ files and their material libraries.
 
-use crate::{area, assert_says, no_files, triangles};
+use crate::{area, assert_says, no_files, png, triangles};
 use antumbra_scene::import::{Model, obj};
 use antumbra_scene::{Material, SceneError, Wrap};
 use glam::{Vec3, vec2, vec3};
@@ -97,8 +97,8 @@ fn what_is_wrong_is_said_with_its_line() {
         ("f 1 2 99999999999999999999", ["line 6", "999", "corner"]),
         ("v 1 2", ["line 6", "missing", "number"]),
         ("v 1 two 3", ["line 6", "\"two\"", "not a number"]),
-        ("v 1 nan 3", ["line 6", "vertex 4", "finite"]),
-        ("v 1 1e99 3", ["line 6", "vertex 4", "finite"]),
+        ("v 1 nan 3\nf 1 2 5", ["line 6", "vertex 4", "finite"]),
+        ("v 1 1e99 3\nf 1 2 5", ["line 6", "vertex 4", "finite"]),
     ] {
         assert_says(parse(&format!("{SQUARE}vt 0 0\n{line}\nf 1 2 3\n")), &parts);
     }
@@ -124,12 +124,6 @@ fn disk(library: &'static str) -> impl FnMut(&str) -> std::io::Result<Vec<u8>> {
     }
 }
 
-fn png(picture: image::RgbaImage) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    picture.write_to(&mut std::io::Cursor::new(&mut bytes), image::ImageFormat::Png).unwrap();
-    bytes
-}
-
 fn painted(library: &'static str) -> Model {
     let text =
         format!("mtllib mats\\my paint.mtl\n{SQUARE}vt 0 0\nvt 1 0.25\nusemtl paint\nf 1/1 2/2 3/1\nf 1/2 3/1 4\n");
@@ -153,7 +147,7 @@ fn textures_come_from_the_librarys_folder() {
     assert_eq!(model.materials[0].alpha_cutoff, None);
     let mesh = &model.meshes[0];
     assert_eq!(mesh.positions.len(), 5, "corners that differ in texture coordinates are vertices of their own");
-    assert_eq!(mesh.uvs[..2], [vec2(0.0, 1.0), vec2(1.0, 0.75)], "v counts from the picture's top");
+    assert_eq!(mesh.uvs[..2], [vec2(0.0, 1.0), vec2(2.0, 0.5)], "twice as often, and v counts from the picture's top");
 }
 
 #[test]

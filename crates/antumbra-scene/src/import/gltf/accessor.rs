@@ -31,7 +31,7 @@ struct Sparse<'a> {
 }
 
 impl<'a> File<'a> {
-    /// Elements of `N` components each, of a component type that `accept` allows.
+    /// Elements of `N` components each (1 to 4, or 16 for a matrix), of a component type that `accept` allows.
     pub fn elements<const N: usize>(
         &self,
         index: Index<Accessor>,
@@ -44,7 +44,13 @@ impl<'a> File<'a> {
             Checked::Valid(GenericComponentType(c)) if accept(c) => c,
             _ => return Err(self.malformed(place, "its componentType is not one that is allowed here")),
         };
-        let expected = [Type::Scalar, Type::Vec2, Type::Vec3][N - 1];
+        let expected = match N {
+            1 => Type::Scalar,
+            2 => Type::Vec2,
+            3 => Type::Vec3,
+            4 => Type::Vec4,
+            _ => Type::Mat4,
+        };
         if accessor.type_ != Checked::Valid(expected) {
             return Err(self.malformed(place, format!("its type should be {expected:?} here")));
         }

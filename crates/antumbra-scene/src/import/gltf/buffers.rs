@@ -2,6 +2,7 @@
 
 use super::{File, label, malformed};
 use crate::import::ReadFile;
+use crate::import::text::{abridged, shortened};
 use crate::{Place, SceneError};
 use data_encoding::BASE64_NOPAD;
 use gltf_json::{Index, Root, buffer};
@@ -88,9 +89,9 @@ impl<'a> File<'a> {
 /// The bytes of a data URI, or of the file that a relative one names.
 pub(super) fn read_uri(uri: &str, name: &str, place: &str, read_file: &mut ReadFile) -> Result<Vec<u8>, SceneError> {
     let bad = |problem: &str| malformed(name, Place::Part(place.to_string()), problem);
-    if let Some(data) = uri.strip_prefix("data:") {
-        let (kind, payload) = data.split_once(',').ok_or_else(|| bad("the data URI has no comma"))?;
-        if !kind.ends_with(";base64") {
+    if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
+        let (kind, payload) = uri.split_once(',').ok_or_else(|| bad("the data URI has no comma"))?;
+        if !kind.to_ascii_lowercase().ends_with(";base64") {
             return Ok(percent_decode_str(payload).collect());
         }
         let payload = payload.trim_end_matches('=');
@@ -102,14 +103,18 @@ pub(super) fn read_uri(uri: &str, name: &str, place: &str, read_file: &mut ReadF
         return Err(SceneError::Unsupported {
             file: name.to_string(),
             place: Place::Part(place.to_string()),
-            feature: format!("the address {uri:?}"),
+            feature: format!("the address {:?}", shortened(uri)),
             advice: "download it and refer to it by a relative path".to_string(),
         });
     }
     let path = percent_decode_str(uri).decode_utf8().map_err(|_| bad("the uri is not UTF-8"))?;
+    // No file system has names of this length: it is a payload whose scheme is misspelt.
+    if path.len() > 4096 {
+        return Err(bad(&format!("{:?} is neither a data URI nor a path", shortened(&path))));
+    }
     read_file(&path).map_err(|source| SceneError::Read {
-        file: path.to_string(),
+        file: shortened(&path).into_owned(),
         referrer: Some(format!("{name}, {place}")),
-        source,
+        source: std::io::Error::new(source.kind(), abridged(&source.to_string())),
     })
 }

@@ -18,9 +18,21 @@ pub(super) struct Materials<'f, 'a> {
     read_file: &'f mut ReadFile<'f>,
     /// The model's list of materials.
     pub list: Vec<Material>,
-    known: HashMap<Option<usize>, (usize, Option<UvSource>)>,
+    known: HashMap<Option<usize>, Known>,
     textures: HashMap<usize, Arc<Texture>>,
     untextured: HashMap<usize, usize>,
+    faded: HashMap<(usize, u32), usize>,
+}
+
+/// A material that was read.
+#[derive(Clone, Copy)]
+pub(super) struct Known {
+    /// Its number in the model's list.
+    pub material: usize,
+    /// Its texture coordinates, if it has a texture.
+    pub uvs: Option<UvSource>,
+    /// The cutoff of its alpha, also where the material alone cuts nothing.
+    pub cutoff: Option<f32>,
 }
 
 /// Where a material's texture coordinates come from.
@@ -34,29 +46,27 @@ pub(super) struct UvSource {
 
 impl<'f, 'a> Materials<'f, 'a> {
     pub fn new(file: &'f File<'a>, read_file: &'f mut ReadFile<'f>) -> Self {
-        let (known, textures, untextured) = Default::default();
-        Materials { file, read_file, list: Vec::new(), known, textures, untextured }
+        let (known, textures, untextured, faded) = Default::default();
+        Materials { file, read_file, list: Vec::new(), known, textures, untextured, faded }
     }
 
-    /// The number of a material in the model's list, and its texture coordinates if it has a texture.
-    pub fn get(
-        &mut self,
-        index: Option<Index<gltf_json::Material>>,
-        place: &str,
-    ) -> Result<(usize, Option<UvSource>), SceneError> {
+    /// A material of the file, or the default one.
+    pub fn get(&mut self, index: Option<Index<gltf_json::Material>>, place: &str) -> Result<Known, SceneError> {
         let key = index.map(|i| i.value());
         if let Some(&known) = self.known.get(&key) {
             return Ok(known);
         }
-        let (material, uvs) = match index {
+        let (mut material, uvs) = match index {
             None => (Material::default(), None),
             Some(index) => {
                 let source = self.file.get(&self.file.root.materials, index, "materials", place)?;
                 self.read(source, &label("material", index.value(), &source.name))?
             }
         };
+        let cutoff = material.alpha_cutoff;
+        texture_file::drop_idle_mask(&mut material);
         self.list.push(material);
-        let known = (self.list.len() - 1, uvs);
+        let known = Known { material: self.list.len() - 1, uvs, cutoff };
         self.known.insert(key, known);
         Ok(known)
     }
@@ -72,9 +82,26 @@ impl<'f, 'a> Materials<'f, 'a> {
         })
     }
 
+    /// The same material with its alpha multiplied.
+    pub fn faded(&mut self, material: usize, alpha: f32, cutoff: f32) -> usize {
+        let list = &mut self.list;
+        *self.faded.entry((material, alpha.to_bits())).or_insert_with(|| {
+            let mut copy = Material { alpha_cutoff: Some(cutoff), ..list[material].clone() };
+            copy.base_color.w *= alpha;
+            texture_file::drop_idle_mask(&mut copy);
+            list.push(copy);
+            list.len() - 1
+        })
+    }
+
     fn read(&mut self, source: &material::Material, place: &str) -> Result<(Material, Option<UvSource>), SceneError> {
+        let gloss = source.extensions.as_ref().and_then(|e| e.pbr_specular_glossiness.as_ref());
         let pbr = &source.pbr_metallic_roughness;
-        let texture = match &pbr.base_color_texture {
+        let (factor, info) = match gloss {
+            Some(gloss) => (gloss.diffuse_factor.0, &gloss.diffuse_texture),
+            None => (pbr.base_color_factor.0, &pbr.base_color_texture),
+        };
+        let texture = match info {
             None => None,
             Some(info) => Some(self.texture(info.index, place)?),
         };
@@ -84,13 +111,16 @@ impl<'f, 'a> Materials<'f, 'a> {
             Checked::Valid(AlphaMode::Blend) => Some(0.5),
             Checked::Invalid => return Err(self.file.malformed(place, "its alphaMode is not OPAQUE, MASK or BLEND")),
         };
-        let base_color = Vec4::from(pbr.base_color_factor.0);
+        let base_color = Vec4::from(factor);
         if !base_color.is_finite() || alpha_cutoff.is_some_and(|c| !c.is_finite()) {
-            return Err(self.file.malformed(place, "its baseColorFactor and alphaCutoff must be finite"));
+            return Err(self.file.malformed(place, "its colour factor and its alphaCutoff must be finite"));
         }
-        let mut material = Material { base_color, texture, alpha_cutoff, double_sided: source.double_sided };
-        texture_file::drop_idle_mask(&mut material);
-        Ok((material, pbr.base_color_texture.as_ref().map(uv_source)))
+        let material = Material { base_color, texture, alpha_cutoff, double_sided: source.double_sided };
+        if alpha_cutoff.is_some_and(|cutoff| base_color.w < cutoff) {
+            let message = "its alpha is below the cutoff; its surfaces cast no shadow and are not drawn";
+            self.file.warnings.add(place, message);
+        }
+        Ok((material, info.as_ref().map(uv_source)))
     }
 
     fn texture(&mut self, index: Index<gltf_json::Texture>, place: &str) -> Result<Arc<Texture>, SceneError> {

@@ -1,44 +1,57 @@
 //! glTF 2.0, as text (`.gltf`) or binary (`.glb`).
 //!
 //! Read are: the default scene's nodes (all root nodes where there is no scene), triangle lists, strips and fans,
-//! indices of every type, sparse and quantised accessors, base colour factor and texture with
-//! `KHR_texture_transform`, `doubleSided`, the first perspective camera, and the first light of
-//! `KHR_lights_punctual` as a rectangular light whose edge is 1/20 of its distance.
+//! indices of every type, sparse and quantised accessors, skins and morph targets at rest, base colour factor and
+//! texture with `KHR_texture_transform`, or those of `KHR_materials_pbrSpecularGlossiness`, alpha of vertices,
+//! `doubleSided`, the first perspective camera, the first light of `KHR_lights_punctual` as a rectangular light whose
+//! edge is 1/20 of its distance, `EXT_mesh_gpu_instancing` and `KHR_node_visibility`.
 //!
-//! A shadow is cast or it is not: `alphaMode` `BLEND` is read as `MASK` with a cutoff of one half. Skins and morph
-//! targets stay in their rest pose. Points and lines are skipped, as they cast no shadow.
+//! A shadow is cast or it is not: `alphaMode` `BLEND` is read as `MASK` with a cutoff of one half. Points and lines are
+//! skipped, as they cast no shadow. Extensions that are not read and may change what casts are named in a warning.
 
 mod accessor;
 mod buffers;
+mod cutout;
+mod extensions;
 mod geometry;
 mod material;
 mod nodes;
+mod pose;
+mod views;
 
+use super::text::{abridged, decoded};
+use super::warnings::Warnings;
 use super::{Model, ReadFile};
 use crate::{Place, SceneError};
 use buffers::Buffers;
-use gltf_json::{Index, Root};
-
-/// The extensions that a file may require.
-const SUPPORTED: &[&str] =
-    &["KHR_lights_punctual", "KHR_texture_transform", "KHR_mesh_quantization", "KHR_materials_unlit"];
+use gltf_json::{Index, Root, Value};
+use std::cell::OnceCell;
 
 /// Reads a `.glb` or `.gltf` file. `name` is for messages; `read_file` reads the buffers and images that the file
 /// refers to.
 pub fn parse(bytes: &[u8], name: &str, read_file: &mut ReadFile) -> Result<Model, SceneError> {
     let (json, binary) = if bytes.starts_with(b"glTF") { chunks(bytes, name)? } else { (bytes, None) };
+    // Some exporters pad with zeros instead of spaces.
+    let json = &decoded(json)[..];
+    let json = json.trim_ascii_end().strip_suffix(b"\0").map_or(json, |_| trim_zeros(json));
     let root = read_json(json, name)?;
-    check_extensions(&root, name)?;
+    extensions::check(&root, name)?;
     let buffers = Buffers::load(&root, name, binary, read_file)?;
-    let file = File { name, root: &root, buffers: &buffers };
+    let (warnings, values) = (Warnings::new(name), OnceCell::new());
+    let file = File { name, json, values, root: &root, buffers: &buffers, warnings };
+    extensions::warn(&file);
     nodes::import(&file, read_file)?.checked(name)
 }
 
 /// The document and its buffers.
 struct File<'a> {
     name: &'a str,
+    json: &'a [u8],
+    /// The document as it is written, once it was asked for.
+    values: OnceCell<Value>,
     root: &'a Root,
     buffers: &'a Buffers<'a>,
+    warnings: Warnings<'a>,
 }
 
 impl<'a> File<'a> {
@@ -51,6 +64,11 @@ impl<'a> File<'a> {
             count: list.len(),
             what,
         })
+    }
+
+    /// The document with the parts that [`Root`] leaves out.
+    fn values(&self) -> &Value {
+        self.values.get_or_init(|| gltf_json::deserialize::from_slice(self.json).unwrap_or_default())
     }
 
     fn malformed(&self, place: impl Into<String>, problem: impl Into<String>) -> SceneError {
@@ -106,8 +124,6 @@ const JSON_CHUNK: u32 = u32::from_le_bytes(*b"JSON");
 const BINARY_CHUNK: u32 = u32::from_le_bytes(*b"BIN\0");
 
 fn read_json(json: &[u8], name: &str) -> Result<Root, SceneError> {
-    // Some exporters pad with zeros instead of spaces.
-    let json = json.trim_ascii_end().strip_suffix(b"\0").map_or(json, |_| trim_zeros(json));
     let root = Root::from_slice(json).map_err(|e| {
         let place = Place::LineColumn(e.line(), e.column());
         malformed(name, place, format!("the JSON is not that of glTF 2.0: {}", without_position(&e)))
@@ -127,27 +143,5 @@ fn trim_zeros(json: &[u8]) -> &[u8] {
 /// The message of a JSON error without the place, which is said elsewhere.
 fn without_position(error: &gltf_json::Error) -> String {
     let text = error.to_string();
-    text.split(" at line ").next().unwrap_or(&text).to_string()
-}
-
-fn check_extensions(root: &Root, name: &str) -> Result<(), SceneError> {
-    match root.extensions_required.iter().find(|e| !SUPPORTED.contains(&e.as_str())) {
-        None => Ok(()),
-        Some(extension) => Err(SceneError::Unsupported {
-            file: name.to_string(),
-            place: Place::Part("extensionsRequired".to_string()),
-            feature: extension.clone(),
-            advice: advice(extension).to_string(),
-        }),
-    }
-}
-
-fn advice(extension: &str) -> &'static str {
-    match extension {
-        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
-            "export the model without mesh compression, or undo it with `gltf-transform copy`"
-        }
-        "KHR_texture_basisu" | "EXT_texture_webp" | "EXT_texture_avif" => "export the model with PNG or JPEG textures",
-        _ => "export the model without this extension",
-    }
+    abridged(text.split(" at line ").next().unwrap_or(&text)).into_owned()
 }

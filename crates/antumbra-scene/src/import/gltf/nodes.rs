@@ -1,19 +1,16 @@
-//! The node hierarchy, with its cameras and lights.
+//! The node hierarchy. Transforms are multiplied in double precision, since a scene may lie far from the origin.
 
 use super::material::Materials;
+use super::pose::Pose;
+use super::views::{Views, aimed, rect_light};
 use super::{File, label};
+use crate::SceneError;
+use crate::import::far::Placed;
 use crate::import::{Model, ReadFile};
-use crate::{Aabb, Camera, Instance, RectLight, SceneError};
-use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
-use gltf_json::extensions::scene::khr_lights_punctual::Type as LightType;
-use gltf_json::validation::Checked;
-use gltf_json::{Index, Node};
-
-/// Edge of a light as a fraction of its distance: glTF's lights have no size and would cast hard shadows.
-const EDGE_OF_DISTANCE: f32 = 1.0 / 20.0;
-
-/// A directional light stands this many radii of the scene from its centre.
-const DIRECTIONAL_DISTANCE: f32 = 4.0;
+use glam::{DAffine3, DMat4, DQuat, DVec3};
+use gltf_json::accessor::ComponentType;
+use gltf_json::{Index, Node, Value};
+use std::collections::HashMap;
 
 /// Everything that hangs on the scene's nodes.
 pub(super) fn import(file: &File, read_file: &mut ReadFile) -> Result<Model, SceneError> {
@@ -22,16 +19,20 @@ pub(super) fn import(file: &File, read_file: &mut ReadFile) -> Result<Model, Sce
         file,
         materials: Materials::new(file, &mut read),
         model: Model { name: file.name.to_string(), ..Model::default() },
-        meshes: vec![None; file.root.meshes.len()],
-        camera: None,
-        light: None,
+        world_from_node: vec![None; file.root.nodes.len()],
+        meshes: HashMap::new(),
+        placed: Vec::new(),
+        views: Views::default(),
     };
-    walk.nodes()?;
-    let Walk { materials, mut model, camera, light, .. } = walk;
+    for (index, visible) in walk.hierarchy()? {
+        walk.visit(index, visible)?;
+    }
+    let Walk { materials, mut model, placed, views, .. } = walk;
     model.materials = materials.list;
+    model.place(&placed);
     let bounds = model.bounds();
-    model.camera = camera.map(|c| aimed(c, &bounds));
-    model.light = light.and_then(|(kind, place)| rect_light(kind, &place, &bounds));
+    model.camera = views.camera.and_then(|(lens, place)| aimed(lens, &model.local(&place), &bounds));
+    model.light = views.light.and_then(|(kind, place)| rect_light(kind, &model.local(&place), &bounds));
     Ok(model)
 }
 
@@ -39,31 +40,46 @@ struct Walk<'f, 'a> {
     file: &'f File<'a>,
     materials: Materials<'f, 'a>,
     model: Model,
-    /// The model's meshes for each of the file's meshes that was met.
-    meshes: Vec<Option<std::ops::Range<usize>>>,
-    camera: Option<Camera>,
-    light: Option<(LightType, Affine3A)>,
+    /// Transforms of the nodes in the scene.
+    world_from_node: Vec<Option<DAffine3>>,
+    /// The model's meshes for each shape that was met, each with the point that is its origin.
+    meshes: HashMap<Shape, Vec<(usize, DVec3)>>,
+    placed: Vec<Placed>,
+    views: Views,
+}
+
+/// What makes one mesh of the file look different at two nodes.
+#[derive(PartialEq, Eq, Hash)]
+struct Shape {
+    mesh: usize,
+    skin: Option<usize>,
+    /// Bits of the morph targets' weights.
+    weights: Vec<u32>,
 }
 
 impl Walk<'_, '_> {
-    fn nodes(&mut self) -> Result<(), SceneError> {
+    /// The scene's nodes, parents first, each with false if it is hidden. Fills in the nodes' transforms.
+    fn hierarchy(&mut self) -> Result<Vec<(usize, bool)>, SceneError> {
         let nodes = &self.file.root.nodes;
-        let mut visited = vec![false; nodes.len()];
-        let mut stack: Vec<_> = self.roots()?.into_iter().rev().map(|n| (n, Affine3A::IDENTITY)).collect();
-        while let Some((index, parent)) = stack.pop() {
+        let mut order = Vec::new();
+        let mut stack: Vec<_> = self.roots()?.into_iter().rev().map(|n| (n, DAffine3::IDENTITY, true)).collect();
+        while let Some((index, parent, visible)) = stack.pop() {
             let node = self.file.get(nodes, index, "nodes", "the node hierarchy")?;
-            let place = label("node", index.value(), &node.name);
-            if std::mem::replace(&mut visited[index.value()], true) {
+            let index = index.value();
+            let place = label("node", index, &node.name);
+            let world_from_node = parent * self.transform(node, index, &place)?;
+            if self.world_from_node[index].replace(world_from_node).is_some() {
                 return Err(self
                     .file
                     .malformed(place, "it has two parents or is its own ancestor; nodes must form a tree"));
             }
-            let world_from_node = parent * self.transform(node, &place)?;
-            self.visit(node, world_from_node, &place)?;
+            let hides = |v: &Value| v.get("visible").and_then(Value::as_bool) == Some(false);
+            let visible = visible && !extension(node, "KHR_node_visibility").is_some_and(hides);
+            order.push((index, visible));
             let children = node.children.iter().flatten().rev();
-            stack.extend(children.map(|&child| (child, world_from_node)));
+            stack.extend(children.map(|&child| (child, world_from_node, visible)));
         }
-        Ok(())
+        Ok(order)
     }
 
     /// The default scene's nodes; the first scene's where there is no default; all that have no parent where there is
@@ -86,127 +102,129 @@ impl Walk<'_, '_> {
         Ok((0..root.nodes.len() as u32).filter(is_root).map(Index::new).collect())
     }
 
-    fn transform(&self, node: &Node, place: &str) -> Result<Affine3A, SceneError> {
+    fn transform(&self, node: &Node, index: usize, place: &str) -> Result<DAffine3, SceneError> {
         let transform = match node.matrix {
-            Some(matrix) => Affine3A::from_mat4(Mat4::from_cols_array(&matrix)),
+            Some(matrix) => DAffine3::from_mat4(DMat4::from_cols_array(&self.file.exact(index, "matrix", matrix))),
             None => {
-                let rotation = Quat::from_array(node.rotation.unwrap_or_default().0);
-                let rotation = if rotation.length_squared() > 0.0 { rotation.normalize() } else { Quat::IDENTITY };
-                let scale = node.scale.map_or(Vec3::ONE, Vec3::from);
-                let translation = node.translation.map_or(Vec3::ZERO, Vec3::from);
-                Affine3A::from_scale_rotation_translation(scale, rotation, translation)
+                let rotation = rotation(node.rotation.unwrap_or_default().0);
+                let scale = node.scale.map_or(DVec3::ONE, |s| s.map(f64::from).into());
+                let exact = |t| DVec3::from(self.file.exact(index, "translation", t));
+                let translation = node.translation.map_or(DVec3::ZERO, exact);
+                DAffine3::from_scale_rotation_translation(scale, rotation, translation)
             }
         };
-        if transform.is_finite() {
+        if transform.as_affine3a().is_finite() {
             Ok(transform)
         } else {
             Err(self.file.malformed(place, "its transform is not finite"))
         }
     }
 
-    fn visit(&mut self, node: &Node, world_from_node: Affine3A, place: &str) -> Result<(), SceneError> {
-        if let Some(index) = node.mesh {
-            self.file.get(&self.file.root.meshes, index, "meshes", place)?;
-            if node.skin.is_some() {
-                tracing::warn!("{}, {place}: skins are not applied, the mesh stays in its rest pose", self.file.name);
-            }
-            for mesh in self.meshes_of(index.value())? {
-                self.model.instances.push(Instance { mesh, world_from_object: world_from_node, receiver_only: false });
-            }
+    fn visit(&mut self, index: usize, visible: bool) -> Result<(), SceneError> {
+        let node = &self.file.root.nodes[index];
+        let place = label("node", index, &node.name);
+        let Some(world_from_node) = self.world_from_node[index] else { return Ok(()) };
+        if visible {
+            self.show(node, world_from_node, &place)?;
+            self.views.visit_light(self.file, node, &world_from_node, &place)?;
         }
-        if let Some(index) = node.camera {
-            let camera = self.camera(index, &world_from_node, place)?;
-            self.camera = self.camera.or(camera);
-        }
-        let extension = node.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-        if let Some(reference) = extension {
-            let lights = self.file.root.extensions.as_ref().and_then(|e| e.khr_lights_punctual.as_ref());
-            let lights = lights.map_or(&[][..], |l| &l.lights);
-            let Checked::Valid(kind) = self.file.get(lights, reference.light, "lights", place)?.type_ else {
-                return Err(self.file.malformed(place, "its light's type is not directional, point or spot"));
-            };
-            match self.light {
-                None => self.light = Some((kind, world_from_node)),
-                Some(_) => tracing::warn!("{}, {place}: only the first light casts shadows", self.file.name),
-            }
+        // A camera shows nothing itself.
+        self.views.visit_camera(self.file, node, &world_from_node, &place)
+    }
+
+    /// Places a node's mesh.
+    fn show(&mut self, node: &Node, world_from_node: DAffine3, place: &str) -> Result<(), SceneError> {
+        let Some(index) = node.mesh else { return Ok(()) };
+        let mesh = self.file.get(&self.file.root.meshes, index, "meshes", place)?;
+        let pose = Pose::new(self.file, node, mesh, &self.world_from_node, place)?;
+        // Joints take a skin to the world, wherever its node is.
+        let places = match pose.joints {
+            Some(_) => vec![DAffine3::IDENTITY],
+            None => self.copies(node, place)?.into_iter().map(|copy| world_from_node * copy).collect(),
+        };
+        let skin = node.skin.filter(|_| pose.joints.is_some()).map(|s| s.value());
+        let weights = pose.weights.iter().map(|w| w.to_bits()).collect();
+        let meshes = self.meshes_of(Shape { mesh: index.value(), skin, weights }, &pose)?;
+        for world_from_node in places {
+            self.placed.extend(meshes.iter().map(|&(mesh, origin)| Placed {
+                mesh,
+                world_from_object: world_from_node * DAffine3::from_translation(origin),
+                receiver_only: false,
+            }));
         }
         Ok(())
     }
 
-    /// The model's meshes for one of the file's, which is read when it is first met.
-    fn meshes_of(&mut self, index: usize) -> Result<std::ops::Range<usize>, SceneError> {
-        if let Some(range) = &self.meshes[index] {
-            return Ok(range.clone());
+    /// The model's meshes for a shape, which is read when it is first met.
+    fn meshes_of(&mut self, shape: Shape, pose: &Pose) -> Result<Vec<(usize, DVec3)>, SceneError> {
+        if let Some(known) = self.meshes.get(&shape) {
+            return Ok(known.clone());
         }
-        let start = self.model.meshes.len();
-        self.model.meshes.extend(self.file.meshes(index, &mut self.materials)?);
-        let range = start..self.model.meshes.len();
-        self.meshes[index] = Some(range.clone());
-        Ok(range)
+        let mut meshes = Vec::new();
+        for (mesh, origin) in self.file.meshes(shape.mesh, pose, &mut self.materials)? {
+            meshes.push((self.model.meshes.len(), origin));
+            self.model.meshes.push(mesh);
+        }
+        self.meshes.insert(shape, meshes.clone());
+        Ok(meshes)
     }
 
-    fn camera(
-        &self,
-        index: Index<gltf_json::Camera>,
-        world_from_node: &Affine3A,
-        place: &str,
-    ) -> Result<Option<Camera>, SceneError> {
-        let file = self.file;
-        let source = file.get(&file.root.cameras, index, "cameras", place)?;
-        let place = format!("{place}, {}", label("camera", index.value(), &source.name));
-        let Some(lens) = &source.perspective else {
-            tracing::warn!("{}, {place}: only perspective cameras are read; this one is left out", file.name);
-            return Ok(None);
+    /// The transforms of `EXT_mesh_gpu_instancing` to the node, or the node alone.
+    fn copies(&self, node: &Node, place: &str) -> Result<Vec<DAffine3>, SceneError> {
+        let Some(instancing) = extension(node, "EXT_mesh_gpu_instancing") else { return Ok(vec![DAffine3::IDENTITY]) };
+        let place = format!("{place}, EXT_mesh_gpu_instancing");
+        let accessor = |name: &str| {
+            let index = instancing.get("attributes")?.get(name)?.as_u64()?;
+            Some(Index::new(u32::try_from(index).unwrap_or(u32::MAX)))
         };
-        let Some((eye, forward, up)) = axes(world_from_node) else {
-            tracing::warn!("{}, {place}: its node is flattened by a scale of 0; the camera is left out", file.name);
-            return Ok(None);
-        };
-        let (fov_y_deg, near, far) = (lens.yfov.to_degrees(), lens.znear, lens.zfar.unwrap_or(f32::INFINITY));
-        if !(fov_y_deg > 0.0 && fov_y_deg < 180.0 && near > 0.0 && near.is_finite() && far > near) {
-            return Err(file.malformed(place, "it needs 0 < yfov < pi and 0 < znear < zfar"));
+        let (is_float, is_signed) = (|c| c == ComponentType::F32, |c| !is_unsigned(c));
+        let translations = accessor("TRANSLATION").map(|a| self.file.elements::<3>(a, is_float, &place)).transpose()?;
+        let rotations = accessor("ROTATION").map(|a| self.file.elements::<4>(a, is_signed, &place)).transpose()?;
+        let scales = accessor("SCALE").map(|a| self.file.elements::<3>(a, is_float, &place)).transpose()?;
+        let mut counts = [&translations, &rotations, &scales].into_iter().flatten().map(|e| e.count);
+        let Some(count) = counts.next() else { return Ok(vec![DAffine3::IDENTITY]) };
+        if counts.any(|c| c != count) {
+            return Err(self.file.malformed(place, "its attributes have different counts"));
         }
-        Ok(Some(Camera { eye, target: eye + forward, up, fov_y_deg, near, far }))
+        let transform = |i: usize| {
+            DAffine3::from_scale_rotation_translation(
+                scales.as_ref().map_or(DVec3::ONE, |e| e.floats(i).map(f64::from).into()),
+                rotations.as_ref().map_or(DQuat::IDENTITY, |e| rotation(e.floats(i))),
+                translations.as_ref().map_or(DVec3::ZERO, |e| e.floats(i).map(f64::from).into()),
+            )
+        };
+        let transforms: Vec<_> = (0..count).map(transform).collect();
+        match transforms.iter().position(|t| !t.is_finite()) {
+            None => Ok(transforms),
+            Some(i) => Err(self.file.malformed(format!("{place}, instance {i}"), "its transform is not finite")),
+        }
     }
 }
 
-/// Position, viewing direction and up direction of a node's camera or light; `None` where a scale of 0 leaves none.
-fn axes(world_from_node: &Affine3A) -> Option<(Vec3, Vec3, Vec3)> {
-    let forward = world_from_node.transform_vector3(Vec3::NEG_Z).try_normalize()?;
-    let up = world_from_node.transform_vector3(Vec3::Y).try_normalize()?;
-    (forward.cross(up).length() > 1e-4).then_some((world_from_node.translation.into(), forward, up))
+impl File<'_> {
+    /// Numbers of a node: large ones, as of a georeferenced model, in double precision.
+    fn exact<const N: usize>(&self, node: usize, key: &str, rounded: [f32; N]) -> [f64; N] {
+        const SMALL: f32 = 8192.0; // Rounding is below a millimetre.
+        let exact = || {
+            let written = self.values().get("nodes")?.get(node)?.get(key)?.as_array()?;
+            let numbers: Vec<f64> = written.iter().map_while(Value::as_f64).collect();
+            numbers.try_into().ok()
+        };
+        let is_small = rounded.iter().all(|x| x.abs() < SMALL);
+        if is_small { None } else { exact() }.unwrap_or(rounded.map(f64::from))
+    }
 }
 
-/// The camera with its target moved along the view to where the scene is, which orbiting it wants.
-fn aimed(camera: Camera, bounds: &Aabb) -> Camera {
-    let forward = (camera.target - camera.eye).normalize();
-    let distance = (bounds.center() - camera.eye).dot(forward).max(2.0 * camera.near);
-    let target = camera.eye + forward * if distance.is_finite() { distance } else { 1.0 };
-    Camera { target, ..camera }
+/// An extension that the library of glTF's types does not know.
+fn extension<'n>(node: &'n Node, name: &str) -> Option<&'n Value> {
+    node.extensions.as_ref()?.others.get(name)
 }
 
-/// A rectangle in place of a light without size; `None` if its node has no direction left.
-fn rect_light(kind: LightType, world_from_node: &Affine3A, bounds: &Aabb) -> Option<RectLight> {
-    let middle = bounds.center();
-    let radius = (0.5 * bounds.size().length()).max(1e-3);
-    let (position, forward, up) = match kind {
-        LightType::Point => {
-            let position = Vec3::from(world_from_node.translation);
-            let forward = (middle - position).try_normalize().unwrap_or(Vec3::NEG_Y);
-            (position, forward, crate::framing::up_for(forward))
-        }
-        LightType::Spot => axes(world_from_node)?,
-        LightType::Directional => {
-            let (_, forward, up) = axes(world_from_node)?;
-            (middle - forward * (DIRECTIONAL_DISTANCE * radius), forward, up)
-        }
-    };
-    let distance = Some(position.distance(middle)).filter(|d| *d > 1e-3 * radius && d.is_finite()).unwrap_or(radius);
-    Some(RectLight {
-        center: position,
-        target: position + forward * distance,
-        up,
-        size: Vec2::splat(EDGE_OF_DISTANCE * distance),
-        shadow_fov_deg: None,
-    })
+fn rotation(quaternion: [f32; 4]) -> DQuat {
+    let rotation = DQuat::from_array(quaternion.map(f64::from));
+    if rotation.length_squared() > 0.0 { rotation.normalize() } else { DQuat::IDENTITY }
+}
+
+fn is_unsigned(component: ComponentType) -> bool {
+    matches!(component, ComponentType::U8 | ComponentType::U16 | ComponentType::U32)
 }

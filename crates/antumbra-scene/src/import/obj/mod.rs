@@ -2,7 +2,8 @@
 //!
 //! Faces are gathered into one mesh per material, since groups and objects make no difference to a shadow. Polygons
 //! become triangles (concave ones by ears), indices may be negative, normals are not needed. A material library or a
-//! texture that cannot be read is a warning; a face that cannot be drawn is an error that names its line.
+//! texture that cannot be read is a warning; a face that cannot be drawn is an error that names its line. Positions are
+//! read in double precision, and keywords also in capitals.
 //!
 //! The parser is our own. The crates, with their parse times as multiples of ours on models of 1 000 to 70 000 triangles:
 //! - `tobj` 4.0 (1.1 to 2.3): errors name no line; it refuses colours with `w`, `vt` with one number, lines that go on
@@ -15,6 +16,7 @@
 //!   `map_*`.
 
 mod build;
+mod map;
 mod mtl;
 mod statements;
 

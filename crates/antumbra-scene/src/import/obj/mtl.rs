@@ -1,15 +1,24 @@
 //! Material libraries (MTL): diffuse colour, diffuse texture, and transparency as a mask.
 
+use super::map::Map;
 use super::statements::text_after;
-use crate::import::{ReadFile, texture_file};
+use crate::import::warnings::Warnings;
+use crate::import::{ReadFile, text, texture_file};
 use crate::{Material, Texture, Wrap};
-use glam::Vec3;
+use glam::{Affine2, Vec3};
 use image::{Rgba, RgbaImage};
 use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Materials by name.
-pub(super) type Library = HashMap<String, Material>;
+pub(super) type Library = HashMap<String, Paint>;
+
+/// A material, and the transform of the texture coordinates that it asks for.
+#[derive(Clone, Default)]
+pub(super) struct Paint {
+    pub material: Material,
+    pub uv: Affine2,
+}
 
 /// Alpha below which a surface is a hole: a shadow is cast or it is not.
 const CUTOFF: f32 = 0.5;
@@ -21,16 +30,12 @@ const WHITE: Rgba<u8> = Rgba([255; 4]);
 struct Entry {
     name: String,
     color: Option<Vec3>,
+    /// `d`.
     opacity: Option<f32>,
+    /// `Tr`.
+    transparency: Option<f32>,
     color_map: Option<Map>,
     opacity_map: Option<Map>,
-}
-
-/// Path of a texture and the only option of `map_*` that is read.
-#[derive(Clone, PartialEq)]
-struct Map {
-    path: String,
-    clamp: bool,
 }
 
 /// Reads the libraries that an OBJ file names. A file that cannot be read is a warning.
@@ -38,10 +43,12 @@ pub(super) fn load(names: &[String], obj: &str, read_file: &mut ReadFile) -> Lib
     let mut library = Library::new();
     for names in names {
         for (path, bytes) in find(names, obj, read_file) {
-            let mut textures = Textures { mtl: &path, read_file, known: HashMap::new() };
-            for entry in entries(&bytes) {
-                let material = textures.material(&entry);
-                library.entry(entry.name).or_insert(material);
+            let warnings = Warnings::new(&path);
+            let entries = entries(&bytes, &warnings);
+            let mut textures = Textures { mtl: &path, warnings: &warnings, read_file, known: HashMap::new() };
+            for entry in entries {
+                let paint = textures.paint(&entry);
+                library.entry(entry.name).or_insert(paint);
             }
         }
     }
@@ -64,110 +71,131 @@ fn find(names: &str, obj: &str, read_file: &mut ReadFile) -> Vec<(String, Vec<u8
     found
 }
 
-fn with_slashes(path: &str) -> String {
+pub(super) fn with_slashes(path: &str) -> String {
     path.replace('\\', "/")
 }
 
-fn entries(bytes: &[u8]) -> Vec<Entry> {
+fn entries(bytes: &[u8], warnings: &Warnings) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
-    for line in bytes.split(|&b| b == b'\n') {
+    for (number, line) in (1..).zip(text::plain(bytes).split(|&b| b == b'\n')) {
         let line = line.trim_ascii();
         let keyword = line.split(|b| b.is_ascii_whitespace()).next().unwrap_or_default();
         let text = text_after(line, keyword);
+        let keyword = keyword.to_ascii_lowercase();
         if keyword == b"newmtl" {
             entries.push(Entry { name: text, ..Entry::default() });
             continue;
         }
         let Some(entry) = entries.last_mut() else { continue };
-        let numbers = || text.split_whitespace().map_while(|w| w.parse::<f32>().ok()).filter(|x| x.is_finite());
-        match keyword {
-            b"Kd" => {
-                let values: Vec<f32> = numbers().collect();
+        let place = || format!("line {number}");
+        let words = text.split_whitespace().skip_while(|w| *w == "-halo");
+        let numbers = words.map_while(|w| w.parse::<f32>().ok()).filter(|x| x.is_finite());
+        match &keyword[..] {
+            b"kd" => {
+                let values: Vec<f32> = numbers.collect();
                 entry.color = match values[..] {
                     [r, g, b, ..] => Some(Vec3::new(r, g, b)),
                     [grey, ..] => Some(Vec3::splat(grey)),
                     [] => None,
                 };
             }
-            b"d" => entry.opacity = numbers().next(),
-            b"Tr" => entry.opacity = numbers().next().map(|t| 1.0 - t),
-            b"map_Kd" => entry.color_map = map(&text),
-            b"map_d" => entry.opacity_map = map(&text),
+            b"d" => {
+                if text.starts_with("-halo") {
+                    warnings.add(place(), "the option -halo is not read; the opacity is the same from everywhere");
+                }
+                entry.opacity = numbers.last();
+            }
+            b"tr" => entry.transparency = numbers.last(),
+            b"map_kd" => entry.color_map = Map::parse(&text, place, warnings),
+            b"map_d" => entry.opacity_map = Map::parse(&text, place, warnings),
+            b"map_tr" => warnings.add(place(), "map_Tr is not read; write its opacity as map_d"),
+            b"disp" | b"map_disp" => warnings.add(place(), "displacement is not read; surfaces stay where they are"),
             _ => {}
         }
     }
     entries
 }
 
-/// Arguments of `map_*`: options, then a file name that may hold spaces.
-fn map(text: &str) -> Option<Map> {
-    let (mut rest, mut clamp) = (text.trim(), false);
-    while rest.starts_with('-') {
-        let (option, after) = rest.split_once(char::is_whitespace)?;
-        rest = after.trim_start();
-        let word = rest.split(char::is_whitespace).next()?;
-        let (least, most) = match option {
-            "-mm" => (2, 2),
-            "-o" | "-s" | "-t" => (1, 3),
-            _ => (1, 1),
-        };
-        clamp |= option == "-clamp" && word == "on";
-        for i in 0..most {
-            let (word, after) = rest.split_once(char::is_whitespace)?;
-            if i >= least && word.parse::<f32>().is_err() {
-                break;
-            }
-            rest = after.trim_start();
-        }
-    }
-    (!rest.is_empty()).then(|| Map { path: with_slashes(rest), clamp })
-}
-
 /// Reads the textures of one library, each once.
 struct Textures<'a, 'r> {
     mtl: &'a str,
+    warnings: &'a Warnings<'a>,
     read_file: &'a mut ReadFile<'r>,
     known: HashMap<String, Option<Arc<RgbaImage>>>,
 }
 
 impl Textures<'_, '_> {
-    fn material(&mut self, entry: &Entry) -> Material {
-        let map = entry.color_map.as_ref().or(entry.opacity_map.as_ref());
-        let pixels = self.pixels(entry);
-        let opacity = entry.opacity.unwrap_or(1.0);
-        let masked = opacity < 1.0 || (entry.opacity_map.is_some() && pixels.is_some());
+    fn paint(&mut self, entry: &Entry) -> Paint {
+        let color = entry.color_map.as_ref().and_then(|m| Some((m, self.read(&m.path)?)));
+        let mask = entry.opacity_map.as_ref().and_then(|m| Some((m, self.read(&m.path)?)));
+        let color = self.fitting(color, mask.as_ref(), &entry.name);
+        let alpha = match &mask {
+            Some((map, pixels)) => Some(map.opacities(pixels)),
+            None => color.as_ref().and_then(|(_, pixels)| self.own_alpha(pixels, &entry.name)),
+        };
+        let opacity = self.opacity(entry);
+        let masked = opacity < 1.0 || alpha.is_some();
+        let map = mask.as_ref().or(color.as_ref()).map(|(map, _)| *map);
+        let pixels = combined(color.as_ref().map(|(_, pixels)| &**pixels), alpha);
         // Where there is a texture, a black diffuse colour is a common exporter's slip for white.
-        let color = entry.color.filter(|c| pixels.is_none() || *c != Vec3::ZERO).unwrap_or(match pixels {
+        let base = entry.color.filter(|c| pixels.is_none() || *c != Vec3::ZERO).unwrap_or(match pixels {
             Some(_) => Vec3::ONE,
             None => Material::default().base_color.truncate(),
         });
         let wrap = if map.is_some_and(|m| m.clamp) { Wrap::Clamp } else { Wrap::Repeat };
-        Material {
-            base_color: color.extend(opacity),
+        let material = Material {
+            base_color: base.extend(opacity),
             texture: pixels.map(|p| {
                 let (width, height) = p.dimensions();
                 Arc::new(Texture { width, height, rgba: p.into_raw(), wrap: [wrap; 2], nearest: false })
             }),
             alpha_cutoff: masked.then_some(CUTOFF),
             ..Material::default()
-        }
+        };
+        Paint { material, uv: map.map_or(Affine2::IDENTITY, Map::uv_transform) }
     }
 
-    /// Colour of one texture with the alpha of the other.
-    fn pixels(&mut self, entry: &Entry) -> Option<RgbaImage> {
-        let color = entry.color_map.as_ref().and_then(|m| self.read(&m.path));
-        let opacity = entry.opacity_map.as_ref().and_then(|m| self.read(&m.path));
-        let (width, height) = color.as_ref().or(opacity.as_ref())?.dimensions();
-        let mut pixels = color.map_or_else(|| RgbaImage::from_pixel(width, height, WHITE), |c| RgbaImage::clone(&c));
-        // An opacity map is grey, or has its opacity in the alpha channel.
-        let channel = if opacity.iter().any(|o| o.pixels().any(|p| p[3] < 255)) { 3 } else { 0 };
-        let scaled = |i: u32, from: u32, to: u32| (u64::from(i) * u64::from(to) / u64::from(from)) as u32;
-        for (x, y, pixel) in pixels.enumerate_pixels_mut() {
-            pixel[3] = opacity
-                .as_ref()
-                .map_or(255, |o| o.get_pixel(scaled(x, width, o.width()), scaled(y, height, o.height()))[channel]);
+    /// The colours, if they lie on the surface as the mask does: a surface has one set of texture coordinates here, and
+    /// the mask decides what casts.
+    fn fitting<'m>(
+        &self,
+        color: Option<(&'m Map, Arc<RgbaImage>)>,
+        mask: Option<&(&Map, Arc<RgbaImage>)>,
+        name: &str,
+    ) -> Option<(&'m Map, Arc<RgbaImage>)> {
+        let fits = |map: &Map| mask.is_none_or(|(m, _)| m.lies_as(map));
+        if let Some((map, _)) = color.as_ref().filter(|(map, _)| !fits(map)) {
+            let message = "map_Kd and map_d have other options; the texture of map_Kd is left out";
+            self.warnings.add(format!("material {name:?}, {}", map.path), message);
+            return None;
         }
-        Some(pixels)
+        color
+    }
+
+    /// `d`, or else 1 less `Tr`.
+    fn opacity(&self, entry: &Entry) -> f32 {
+        let (d, tr) = (entry.opacity, entry.transparency);
+        if let (Some(d), Some(tr)) = (d, tr)
+            && (d + tr - 1.0).abs() > 0.01
+        {
+            let message = "d and Tr contradict each other, some programs write Tr as another d; d counts";
+            self.warnings.add(format!("material {:?}", entry.name), message);
+        }
+        d.or(tr.map(|tr| 1.0 - tr)).unwrap_or(1.0)
+    }
+
+    /// The alpha of a colour map, unless it would leave nothing, which is an exporter's slip.
+    fn own_alpha(&self, pixels: &RgbaImage, name: &str) -> Option<RgbaImage> {
+        let is_hole = |p: &Rgba<u8>| f32::from(p[3]) < CUTOFF * 255.0;
+        if !pixels.pixels().any(is_hole) {
+            return None;
+        }
+        if pixels.pixels().all(is_hole) {
+            let message = "the alpha of map_Kd would cut all of it out; it is left out";
+            self.warnings.add(format!("material {name:?}"), message);
+            return None;
+        }
+        Some(pixels.clone())
     }
 
     fn read(&mut self, path: &str) -> Option<Arc<RgbaImage>> {
@@ -183,4 +211,16 @@ impl Textures<'_, '_> {
         self.known.insert(path.to_string(), texture.clone());
         texture
     }
+}
+
+/// Colours with the alpha of another image.
+fn combined(color: Option<&RgbaImage>, alpha: Option<RgbaImage>) -> Option<RgbaImage> {
+    let (width, height) = color.or(alpha.as_ref())?.dimensions();
+    let mut pixels = color.map_or_else(|| RgbaImage::from_pixel(width, height, WHITE), RgbaImage::clone);
+    let scaled = |i: u32, from: u32, to: u32| (u64::from(i) * u64::from(to) / u64::from(from)) as u32;
+    for (x, y, pixel) in pixels.enumerate_pixels_mut() {
+        let opacity = |a: &RgbaImage| a.get_pixel(scaled(x, width, a.width()), scaled(y, height, a.height()))[3];
+        pixel[3] = alpha.as_ref().map_or(255, opacity);
+    }
+    Some(pixels)
 }

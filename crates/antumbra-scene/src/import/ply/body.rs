@@ -10,14 +10,15 @@ pub(super) struct Body<'a> {
     at: usize,
     line: usize,
     encoding: Encoding,
+    line_end: u8,
     /// Values of the property that was read last.
     values: Vec<f64>,
 }
 
 impl<'a> Body<'a> {
     pub fn new(bytes: &'a [u8], header: &Header, name: &'a str) -> Body<'a> {
-        let Header { encoding, bytes: at, lines, .. } = *header;
-        Body { name, bytes, at, line: lines + 1, encoding, values: Vec::new() }
+        let Header { encoding, bytes: at, lines, line_end, .. } = *header;
+        Body { name, bytes, at, line: lines + 1, encoding, line_end, values: Vec::new() }
     }
 
     /// Position of the reader.
@@ -103,7 +104,7 @@ impl<'a> Body<'a> {
         let start = rest.iter().position(|b| !b.is_ascii_whitespace()).unwrap_or(rest.len());
         let (space, rest) = rest.split_at(start);
         let word = rest.split(u8::is_ascii_whitespace).next().unwrap_or_default();
-        self.line += space.iter().filter(|&&b| b == b'\n').count();
+        self.line += space.iter().filter(|&&b| b == self.line_end).count();
         if word.is_empty() {
             return Err(self.malformed("the file ends where a number should be; it is damaged or cut off".to_string()));
         }

@@ -66,6 +66,15 @@ impl Property {
     pub fn holds_corners(&self) -> bool {
         self.length.is_some() && matches!(self.name.as_str(), "vertex_indices" | "vertex_index")
     }
+
+    /// The value that stands for one in a colour.
+    pub fn one(&self) -> f64 {
+        match self.kind {
+            Kind::F32 | Kind::F64 => 1.0,
+            Kind::U8 | Kind::I8 => 255.0,
+            _ => 65535.0,
+        }
+    }
 }
 
 /// Element: `count` items that all have the same properties.
@@ -80,10 +89,14 @@ pub(super) struct Element {
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
+    /// Textures that comments name, as several programs do.
+    pub textures: usize,
     /// Offset of the body.
     pub bytes: usize,
     /// Lines before the body.
     pub lines: usize,
+    /// The last byte of every line: LF, or CR alone.
+    pub line_end: u8,
 }
 
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<Header, SceneError> {
@@ -91,8 +104,9 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Header, SceneError> {
         let (file, place) = (name.to_string(), Place::Line(line));
         SceneError::Malformed { file, place, problem: problem.to_string() }
     };
-    let (mut encoding, mut elements, mut at, mut number) = (None, Vec::new(), 0, 0);
-    for line in bytes.split_inclusive(|&b| b == b'\n') {
+    let (mut encoding, mut elements, mut textures, mut at, mut number) = (None, Vec::new(), 0, 0, 0);
+    let line_end = if bytes.starts_with(b"ply\r") && bytes.get(4) != Some(&b'\n') { b'\r' } else { b'\n' };
+    for line in bytes.split_inclusive(|&b| b == line_end) {
         (at, number) = (at + line.len(), number + 1);
         if number == 1 {
             if line.trim_ascii() != b"ply" {
@@ -105,8 +119,9 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Header, SceneError> {
         let words: Vec<&str> = line.split_ascii_whitespace().collect();
         if words == ["end_header"] {
             let encoding = encoding.ok_or_else(|| malformed(number, "the header has no `format` line"))?;
-            return Ok(Header { encoding, elements, bytes: at, lines: number });
+            return Ok(Header { encoding, elements, textures, bytes: at, lines: number, line_end });
         }
+        textures += usize::from(words.starts_with(&["comment", "TextureFile"]));
         statement(&words, &mut encoding, &mut elements).map_err(|problem| malformed(number, &problem))?;
     }
     Err(malformed(number.max(1), "the header has no `end_header`; the file is not PLY or cut off"))
