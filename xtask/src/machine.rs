@@ -14,6 +14,8 @@ pub enum Need {
     CppCompiler,
     /// A Vulkan loader with a driver that can work here: of a GPU, or the software one.
     VulkanDriver,
+    /// Vulkan's validation layer.
+    ValidationLayer,
     /// A display without a screen, and a hand for its mouse, for the tests of the window.
     VirtualDisplay,
     /// A browser with WebGPU, for the test of the page.
@@ -32,6 +34,7 @@ impl Need {
                 env::var_os("CXX").is_some() || ["c++", "g++", "clang++"].iter().any(|c| available(c, &["--version"]))
             }
             Need::VulkanDriver => !cfg!(target_os = "linux") || (has_vulkan_loader() && has_vulkan_driver()),
+            Need::ValidationLayer => has_validation_layer(),
             Need::VirtualDisplay => {
                 !cfg!(target_os = "linux") || (is_on_path("Xvfb") && available("xdotool", &["--version"]))
             }
@@ -45,6 +48,7 @@ impl Need {
         match self {
             Need::CppCompiler => "a C++ compiler",
             Need::VulkanDriver => "a Vulkan driver",
+            Need::ValidationLayer => "Vulkan's validation layer",
             Need::VirtualDisplay => "a virtual display",
             Need::Chromium => "Chromium",
             Need::Rustfmt => "rustfmt",
@@ -57,6 +61,7 @@ impl Need {
         match self {
             Need::CppCompiler => &["g++"],
             Need::VulkanDriver => &["mesa-vulkan-drivers", "libvulkan1"],
+            Need::ValidationLayer => &["vulkan-validationlayers"],
             Need::VirtualDisplay => {
                 &["xvfb", "xdotool", "libx11-xcb1", "libxkbcommon-x11-0", "libxcursor1", "libxi6", "libxrandr2"]
             }
@@ -70,7 +75,7 @@ impl Need {
         match self {
             Need::Rustfmt => Some("rustfmt"),
             Need::Clippy => Some("clippy"),
-            Need::CppCompiler | Need::VulkanDriver | Need::VirtualDisplay | Need::Chromium => None,
+            _ => None,
         }
     }
 }
@@ -157,6 +162,16 @@ fn driver_manifests(variable: impl Fn(&str) -> Option<OsString>) -> Vec<PathBuf>
             return env::split_paths(&files).filter(|file| file.exists()).collect();
         }
     }
+    manifests("vulkan/icd.d", variable)
+}
+
+fn has_validation_layer() -> bool {
+    let layers = manifests("vulkan/explicit_layer.d", |name| env::var_os(name));
+    layers.iter().any(|path| path.to_string_lossy().contains("khronos_validation"))
+}
+
+/// JSON files in a folder of the places where the Vulkan loader looks.
+fn manifests(folder: &str, variable: impl Fn(&str) -> Option<OsString>) -> Vec<PathBuf> {
     let home_data = variable("XDG_DATA_HOME").map(PathBuf::from);
     let home_data = home_data.or_else(|| Some(Path::new(&variable("HOME")?).join(".local/share")));
     let shared = variable("XDG_DATA_DIRS").map(|dirs| env::split_paths(&dirs).collect::<Vec<_>>());
@@ -165,7 +180,7 @@ fn driver_manifests(variable: impl Fn(&str) -> Option<OsString>) -> Vec<PathBuf>
         .into_iter()
         .chain(shared.unwrap_or_default())
         .chain(always.map(PathBuf::from))
-        .filter_map(|data| data.join("vulkan/icd.d").read_dir().ok())
+        .filter_map(|data| data.join(folder).read_dir().ok())
         .flat_map(|entries| entries.flatten().map(|entry| entry.path()))
         .filter(|path| path.extension() == Some(OsStr::new("json")))
         .collect()

@@ -5,6 +5,7 @@ mod machine;
 mod same_bits;
 mod step;
 mod toolchain;
+mod validate;
 mod web;
 
 use std::process::ExitCode;
@@ -16,6 +17,7 @@ cargo xtask demo [ARGUMENT …]         compare techniques on a built-in scene; 
 cargo xtask test                      formatting, lints, documentation and all tests, as the CI does
 cargo xtask docs                      write the tables of settings in docs/techniques anew
 cargo xtask same-bits COMMIT [SCENE …]  compare every technique's visibility with that at a commit, bit for bit
+cargo xtask validate                  draw with every technique under Vulkan's validation layer
 cargo xtask fuzz [TARGET] [SECONDS]   fuzz one importer, or all in turn, for 60 seconds each
 cargo xtask web [--out FOLDER]        build the web page of the viewer, for any web server
 cargo xtask test-web                  build it and drive it in a headless browser";
@@ -27,6 +29,7 @@ fn main() -> ExitCode {
         Some((task, [])) if task == "test" => test(),
         Some((task, [])) if task == "docs" => docs(),
         Some((task, rest)) if task == "same-bits" => same_bits::run(rest),
+        Some((task, [])) if task == "validate" => validate::run(),
         Some((task, rest)) if task == "fuzz" => fuzz::run(rest),
         Some((task, rest)) if task == "web" => web::run(rest),
         Some((task, rest)) if task == "test-web" => web::test(rest),

@@ -74,7 +74,7 @@ fn techniques(program: &Path) -> Result<Vec<String>, Failure> {
     Ok(names(&list))
 }
 
-fn names(list: &str) -> Vec<String> {
+pub fn names(list: &str) -> Vec<String> {
     let starts = list.lines().filter(|line| !line.starts_with(' '));
     starts.filter_map(|line| line.split_whitespace().next()).map(str::to_owned).collect()
 }
