@@ -69,6 +69,21 @@ fn every_key_is_read() {
     assert_eq!((plane.min, plane.max), (vec3(-4.0, 0.0, -4.0), vec3(4.0, 0.0, 4.0)));
 }
 
+/// A near plane that is a part of the farthest distance cuts off all that is near.
+#[test]
+fn a_far_horizon_does_not_move_the_near_plane() {
+    let scene = |scale: f32| {
+        let text = format!(
+            "[[meshes]]\npath = \"a.obj\"\n[[meshes]]\nbuiltin = \"plane\"\nscale = {scale:.1}\nreceiver_only = true\n\
+             [camera]\neye = [1.5, 1.8, 2.0]\ntarget = [0, 0.2, 0]\n"
+        );
+        toml(&text).unwrap()
+    };
+    let [near, far] = [10.0, 100_000.0].map(|scale| scene(scale).camera.near);
+    assert_eq!(near, far);
+    assert!(far < 0.5, "{far}");
+}
+
 #[test]
 fn json_says_the_same() {
     let text = r#"{"width": 640, "height": 480,
