@@ -40,8 +40,9 @@ fn collect(folder: &Path, files: &mut Vec<std::path::PathBuf>) {
     }
 }
 
-/// Names of the structs that are declared at the start of a line by `gpu_struct!`.
+/// Names of the structs that are declared at the start of a line by `gpu_struct!` or `crate::gpu_struct!`.
 fn host_structs(source: &str) -> Vec<&str> {
-    let declarations = source.split("\ngpu_struct! {").skip(1);
+    let starts = ["\ngpu_struct! {", "\ncrate::gpu_struct! {"];
+    let declarations = starts.iter().flat_map(|start| source.split(start).skip(1));
     declarations.filter_map(|d| d.split_once(" struct ")?.1.split([' ', '{']).next()).collect()
 }

@@ -55,12 +55,15 @@ fn every_technique_has_a_page_whose_settings_are_those_of_the_code() {
     let mut wrong = Vec::new();
     for info in TECHNIQUES {
         let file = folder().join(format!("{}.md", info.name));
-        let page = std::fs::read_to_string(&file).unwrap_or_default();
+        let Ok(page) = std::fs::read_to_string(&file) else {
+            wrong.push(format!("docs/techniques/{}.md is missing; the headings are those of hard.md", info.name));
+            continue;
+        };
         match updated(&page, &table(info)) {
-            None => wrong.push(format!("{} is missing, or has no lines `{START}` and `{END}`", file.display())),
+            None => wrong.push(format!("docs/techniques/{}.md has no lines `{START}` and `{END}`", info.name)),
             Some(new) if new == page => {}
             Some(new) if update => std::fs::write(&file, new).expect("the docs are writable"),
-            Some(_) => wrong.push(format!("{}: the table of settings is old", file.display())),
+            Some(_) => wrong.push(format!("docs/techniques/{}.md: the table of settings is old", info.name)),
         }
     }
     assert!(wrong.is_empty(), "{}\n`cargo xtask docs` writes the tables", wrong.join("\n"));
@@ -72,7 +75,7 @@ fn the_list_of_pages_names_every_technique() {
     for info in TECHNIQUES {
         assert!(
             list.contains(&format!("]({}.md)", info.name)),
-            "docs/techniques/README.md does not list {}",
+            "docs/techniques/README.md has no link to {}.md",
             info.name
         );
     }

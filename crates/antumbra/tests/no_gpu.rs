@@ -7,7 +7,7 @@ use antumbra::passes::pixels::geometry_buffer::GeometryBuffer;
 use antumbra::scene::{upload, visibility};
 use antumbra::technique::settings::{Kind, Setting};
 use antumbra::techniques::TECHNIQUES;
-use antumbra::{Frame, FrameDescriptor, Gpu, ShadowFrustum, Shadows, Spec, View};
+use antumbra::{Error, Frame, FrameDescriptor, Gpu, ShadowFrustum, Shadows, Spec, View};
 use pollster::block_on;
 use std::sync::{Arc, LazyLock};
 
@@ -88,8 +88,13 @@ fn every_variant_of_every_technique_binds_what_its_shaders_ask_for() {
     for info in TECHNIQUES {
         for text in variants(info.name, info.settings) {
             let spec: Spec = text.parse().unwrap_or_else(|e| panic!("{text}: {e}"));
-            // Settings that exclude each other or that this device lacks say so when the technique is made.
-            let Ok(mut shadows) = Shadows::from_spec(&GPU, &spec) else { continue };
+            // Settings that exclude each other or that this device lacks say so when the technique is made; a shader
+            // that does not compose is a bug.
+            let mut shadows = match Shadows::from_spec(&GPU, &spec) {
+                Ok(shadows) => shadows,
+                Err(Error::Shader(e)) => panic!("{text}: {e}"),
+                Err(_) => continue,
+            };
             shadows.set_debug_capture(true);
             record(&mut shadows, &frame, &text);
             count += 1;

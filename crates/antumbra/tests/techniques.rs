@@ -132,6 +132,8 @@ fn every_technique_says_what_it_is_and_what_memory_it_takes() {
         for text in [info.name, info.title, info.source, info.summary] {
             assert!(!text.is_empty(), "{}: an empty text", info.name);
         }
+        let same = TECHNIQUES.iter().filter(|other| other.name == info.name).count();
+        assert!(same == 1, "{same} techniques are named `{}`: a SPEC finds only the first", info.name);
         let mut made = technique(info.name);
         shadowed(&renderer, &mut made).unwrap_or_else(|e| panic!("{}: {e}", info.name));
         for memory in made.memory() {

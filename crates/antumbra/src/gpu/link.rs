@@ -26,6 +26,10 @@ pub(super) struct Linked {
 /// Links a module with its imports.
 pub(super) fn link(key: &ShaderKey) -> Result<Linked, ShaderError> {
     let error = |message: String| ShaderError { module: key.module.to_owned(), message };
+    let path = format!("package::{}", key.module);
+    if key.source.is_none() && !SOURCES.iter().any(|(known, _)| *known == path) {
+        return Err(error(format!("there is no file src/{}.wesl", key.module.replace("::", "/"))));
+    }
     let StorageFormat(target) = key.target;
     let host = format!("{}\nalias StorageTarget = texture_storage_2d_array<{target}, write>;\n", *HOST);
     let mut resolver = VirtualResolver::new();
@@ -40,7 +44,7 @@ pub(super) fn link(key: &ShaderKey) -> Result<Linked, ShaderError> {
     }
     if let Some(source) = &key.source {
         let text: Vec<&str> = source.lines().map(str::trim_start).collect();
-        resolver.add_module(module_path(&format!("package::{}", key.module)), text.join("\n").into());
+        resolver.add_module(module_path(&path), text.join("\n").into());
     }
     resolver.add_module(module_path("package::host"), host.into());
     let mut wesl = Wesl::new("").set_custom_resolver(resolver);
@@ -49,12 +53,18 @@ pub(super) fn link(key: &ShaderKey) -> Result<Linked, ShaderError> {
     for feature in &key.features {
         wesl.set_feature(feature, true);
     }
-    let mut linked =
-        wesl.compile(&module_path(&format!("package::{}", key.module))).map_err(|e| error(e.to_string()))?;
+    let mut linked = wesl.compile(&module_path(&path)).map_err(|e| error(without_colors(&e.to_string())))?;
     let map = linked.sourcemap.take().unwrap_or_default();
     let slots = assign_bindings(&mut linked.syntax, &map, key.module).map_err(error)?;
     let known_names = known_names(key);
     Ok(Linked { wgsl: linked.syntax.to_string(), slots, known_names, map })
+}
+
+/// A message without the escape codes that colour it in a terminal: it may go to a log or a web page.
+fn without_colors(message: &str) -> String {
+    let mut parts = message.split("\x1b[");
+    let first = parts.next().unwrap_or_default().to_owned();
+    parts.fold(first, |text, part| text + part.split_once('m').map_or(part, |(_, rest)| rest))
 }
 
 /// Numbers the resources of a program in the order of their declarations, all in group 0.

@@ -3,7 +3,7 @@
 use super::bindings::Layout;
 use super::limits::Needs;
 use super::shader::{Program, ShaderKey};
-use crate::error::Error;
+use crate::error::{Error, ShaderError};
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
@@ -71,9 +71,14 @@ impl PipelineCache {
         *self.most.lock().expect("only numbers are moved under the lock")
     }
 
-    /// Refuses a shader that needs more than the device gives, by name: the driver's messages are for developers, not
-    /// for users.
+    /// Refuses an entry point that the shader does not have, and a shader that needs more than the device gives, by
+    /// name: the driver's messages are for developers, not for users.
     fn check(&self, device: &wgpu::Device, key: &ShaderKey, program: &Program, entry: &str) -> Result<(), Error> {
+        if !program.entry_points().any(|known| known == entry) {
+            let known = program.entry_points().map(|known| format!("`{known}`")).collect::<Vec<_>>().join(", ");
+            let message = format!("no entry point `{entry}`; there are {known}");
+            return Err(ShaderError { module: key.module.to_owned(), message }.into());
+        }
         let needs = program.needs(entry);
         let mut most = self.most.lock().expect("only numbers are moved under the lock");
         *most = most.max(needs);
@@ -119,7 +124,8 @@ impl PipelineCache {
         }
         let program = Program::compose(key)?;
         let has_fragment = program.entry_points().any(|e| e == "fragment");
-        for entry in ["vertex", "fragment"] {
+        let entries: &[&str] = if has_fragment { &["vertex", "fragment"] } else { &["vertex"] };
+        for entry in entries {
             self.check(device, key, &program, entry)?;
         }
         let module = shader_module(device, key, &program);
@@ -155,7 +161,6 @@ impl PipelineCache {
             multiview_mask: RenderTarget::layer_mask(target.layers),
             cache: None,
         });
-        let entries: &[&str] = if has_fragment { &["vertex", "fragment"] } else { &["vertex"] };
         let layout = layout(key, program, pipeline.get_bind_group_layout(0), entries);
         let made = Arc::new(RenderPipeline { pipeline, layout });
         let mut cache = self.render.lock().expect("only maps are touched under the lock");

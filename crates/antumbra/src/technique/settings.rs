@@ -1,5 +1,5 @@
 //! Settings of techniques: declared once, with default, range, unit and help, and set by a SPEC such as
-//! `pcf:map=1024,kernel=5`.
+//! `pcf:map=1024,pcf=5`.
 
 use crate::error::SpecError;
 use serde::{Serialize, de::DeserializeOwned};
@@ -55,14 +55,17 @@ pub trait Settings: Serialize + DeserializeOwned + Default {
     const FIELDS: &'static [Setting];
 }
 
-/// Declares a settings struct: `key: type = default, kind;` with the doc comment as help.
+/// Declares a settings struct: `key: type = default, kind;` with the doc comment, of one line or more,
+/// as help.
 #[macro_export]
 macro_rules! settings {
-    ($(#[$meta:meta])* $vis:vis struct $name:ident { $(#[doc = $help:literal] $key:ident : $type:ty = $default:expr, $kind:expr;)* }) => {
+    ($(#[$meta:meta])* $vis:vis struct $name:ident {
+        $($(#[doc = $help:literal])+ $key:ident : $type:ty = $default:expr, $kind:expr;)*
+    }) => {
         $(#[$meta])*
         #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
         #[serde(default, deny_unknown_fields)]
-        $vis struct $name { $(#[doc = $help] pub $key: $type),* }
+        $vis struct $name { $($(#[doc = $help])+ pub $key: $type),* }
 
         impl Default for $name {
             fn default() -> Self {
@@ -72,7 +75,11 @@ macro_rules! settings {
 
         impl $crate::technique::settings::Settings for $name {
             const FIELDS: &'static [$crate::technique::settings::Setting] =
-                &[$($crate::technique::settings::Setting { key: stringify!($key), help: $help.trim_ascii(), kind: $kind }),*];
+                &[$($crate::technique::settings::Setting {
+                    key: stringify!($key),
+                    help: concat!($($help),+).trim_ascii(),
+                    kind: $kind,
+                }),*];
         }
     };
 }

@@ -12,7 +12,8 @@ pub mod shadow_map;
 pub mod spec;
 pub mod ssm;
 
-/// Every technique, in the order of papers. The command line, the report, the tests and the docs are made from it.
+/// Every technique, in the order of lists and reports. The command line, the report, the tests and the docs are made
+/// from it.
 pub const TECHNIQUES: &[TechniqueInfo] = &[
     entry::<shadow_map::hard::Hard>(),
     entry::<shadow_map::pcf::Pcf>(),
