@@ -142,12 +142,14 @@ fn the_map_only_groups_the_work() {
 fn lists_that_exceed_the_budget_are_made_strip_by_strip() {
     // A plain seen at a grazing angle: a pixel covers many texels of a fine map.
     let scene = under_point("fence");
-    let [small, large] =
-        [1, 256].map(|budget| drawn_after(&scene, &format!("subpixel:map=2048,statistics=true,budget={budget}"), 4));
-    assert!(small.stats["strips"] > 1.0, "{:?}", small.stats);
-    assert_eq!(large.stats["strips"], 1.0);
-    let differing = small.visibility.iter().zip(&large.visibility).filter(|(a, b)| a != b).count();
-    assert_eq!(differing, 0, "pixels differ between {} strips and one", small.stats["strips"]);
+    for filter in ["box", "gaussian"] {
+        let spec = |budget| format!("subpixel:filter={filter},map=2048,statistics=true,budget={budget}");
+        let [small, large] = [1, 256].map(|budget| drawn_after(&scene, &spec(budget), 4));
+        assert!(small.stats["strips"] > 1.0, "{:?}", small.stats);
+        assert_eq!(large.stats["strips"], 1.0);
+        let differing = small.visibility.iter().zip(&large.visibility).filter(|(a, b)| a != b).count();
+        assert_eq!(differing, 0, "{filter}: pixels differ between {} strips and one", small.stats["strips"]);
+    }
 }
 
 #[test]

@@ -9,6 +9,8 @@ gpu_struct! {
     pub(crate) struct StripUniform {
         first_row: u32,
         end_row: u32,
+        /// End of the rows whose masks are made: a filter that reaches into neighbours needs the row below too.
+        end_of_masks: u32,
         /// Entries that the lists can hold.
         capacity: u32,
         /// Number of strips of the frame.
@@ -52,8 +54,9 @@ impl CapacityPlan {
         self.strips
     }
 
-    /// The strips of an image from top to bottom, and the capacity of their lists.
-    pub fn strips(&mut self, size: [u32; 2]) -> (Vec<StripUniform>, u32) {
+    /// The strips of an image from top to bottom, and the capacity of their lists; a filter reads masks of `reach` rows
+    /// below a strip.
+    pub fn strips(&mut self, size: [u32; 2], reach: u32) -> (Vec<StripUniform>, u32) {
         if size != self.size {
             let first = (size[0] * size[1]).saturating_mul(FIRST_ENTRIES.0).max(FIRST_ENTRIES.1);
             (self.size, self.entries, self.strips) = (size, first.min(self.most()), 1);
@@ -62,6 +65,7 @@ impl CapacityPlan {
         let strip = |first_row: u32| StripUniform {
             first_row,
             end_row: (first_row + rows).min(size[1]),
+            end_of_masks: (first_row + rows + reach).min(size[1]),
             capacity: self.entries,
             count: self.strips,
         };

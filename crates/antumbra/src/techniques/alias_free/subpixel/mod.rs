@@ -161,7 +161,7 @@ impl Technique for Subpixel {
         let facets = recorder.texture("facets", facets);
         let masks = BufferDescription::new(u64::from(pixels) * self.pattern.words() as u64 * 8);
         let masks = recorder.buffer("masks of samples", masks);
-        let (strips, entries) = self.plan.strips(frame.size);
+        let (strips, entries) = self.plan.strips(frame.size, u32::from(self.settings.filter == Filter::Gaussian));
         let lists = TexelLists::new(recorder, self.settings.map, entries);
         let (of_frame, depth_map) = (frame.bindings(), bindings! { depth_map: &map.texture });
         let shared = bindings! {
