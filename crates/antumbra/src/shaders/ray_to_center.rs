@@ -42,7 +42,9 @@ fn exact(c: &Case) -> Option<bool> {
     let s = normal.dot(v[0]) / along;
     let distance = (normal.dot(p - v[0]) / area).abs();
     let error = f64::from(c.error);
-    if (distance - error).abs() < 0.5 * error || s.abs() < 1e-4 || (s - 1.0).abs() < 1e-4 {
+    let slant = (v[1] - v[0]).length() * (v[2] - v[0]).length() / area;
+    let rounding = 2.4e-7 * (v[0].length() + (p - v[0]).length() * slant);
+    if (distance - error).abs() < 0.5 * error + 2.0 * rounding || s.abs() < 1e-4 || (s - 1.0).abs() < 1e-4 {
         return None;
     }
     let hit = p * s;

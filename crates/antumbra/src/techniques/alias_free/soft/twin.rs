@@ -98,7 +98,10 @@ fn exact(c: &Case, light_point: DVec3) -> Option<bool> {
     let along = normal.dot(d);
     let distance = (normal.dot(p - v[0]) / area).abs();
     let error = f64::from(c.error);
-    if area < 1e-9 || (distance - error).abs() < 0.5 * error || along.abs() < 1e-3 * area * d.length() {
+    let slant = (v[1] - v[0]).length() * (v[2] - v[0]).length() / area;
+    let rounding = 2.4e-7 * (v[0].length() + (p - v[0]).length() * slant);
+    if area < 1e-9 || (distance - error).abs() < 0.5 * error + 2.0 * rounding || along.abs() < 1e-3 * area * d.length()
+    {
         return None;
     }
     let s = normal.dot(v[0] - p) / along;
