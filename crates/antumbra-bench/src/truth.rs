@@ -1,7 +1,7 @@
 //! The ray-traced reference, from the cache where it was traced before.
 
 use crate::{Error, Monitor};
-use antumbra_metrics::{Image, Metrics, MetricsError, RgbImage, heat_map, metrics};
+use antumbra_metrics::{ErrorMetrics, Image, Metrics, MetricsError, RgbImage, error_metrics, heat_map, metrics};
 use antumbra_reference::cache::{Cached, trace_cached};
 use antumbra_reference::{Reference, Settings, trace};
 use antumbra_scene::Scene;
@@ -73,6 +73,11 @@ impl Truth {
     /// Error metrics of a technique's visibility.
     pub fn metrics(&self, spec: &str, visibility: &[f32]) -> Result<Metrics, Error> {
         self.against(spec, visibility, metrics)
+    }
+
+    /// The same over the pixels where the light is grazing, which [`Truth::metrics`] leaves out.
+    pub fn grazing_metrics(&self, spec: &str, visibility: &[f32]) -> Result<ErrorMetrics, Error> {
+        self.against(spec, visibility, |test, truth, _| error_metrics(test, truth, &self.reference.grazing))
     }
 
     /// Signed error of a technique's visibility as colours.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// Raised whenever the same scene and settings would give other numbers than before.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 const MAGIC: &[u8; 8] = b"antumbra";
 
@@ -95,7 +95,7 @@ fn hash_floats(h: &mut blake3::Hasher, values: impl IntoIterator<Item = f32>) {
     h.update(&bytes);
 }
 
-/// Magic, key, width, height, rays, visibility, error, valid, and the hash of all that; little-endian.
+/// Magic, key, width, height, rays, visibility, error, valid (1) or grazing (2), and the hash of all that; little-endian.
 fn encode(r: &Reference, key: &blake3::Hash) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(128 + r.visibility.len() * 9);
     bytes.extend_from_slice(MAGIC);
@@ -104,7 +104,7 @@ fn encode(r: &Reference, key: &blake3::Hash) -> Vec<u8> {
     bytes.extend(r.height.to_le_bytes());
     bytes.extend(r.rays.to_le_bytes());
     bytes.extend(r.visibility.iter().chain(&r.error).flat_map(|v| v.to_le_bytes()));
-    bytes.extend(r.valid.iter().map(|&v| u8::from(v)));
+    bytes.extend(r.valid.iter().zip(&r.grazing).map(|(&valid, &grazing)| u8::from(valid) + 2 * u8::from(grazing)));
     let hash = blake3::hash(&bytes);
     bytes.extend_from_slice(hash.as_bytes());
     bytes
@@ -131,7 +131,8 @@ fn decode(bytes: &[u8], key: &blake3::Hash, settings: &Settings) -> Option<Refer
         height,
         visibility: floats(&body[..4 * n]),
         error: floats(&body[4 * n..8 * n]),
-        valid: body[8 * n..].iter().map(|&b| b != 0).collect(),
+        valid: body[8 * n..].iter().map(|&b| b == 1).collect(),
+        grazing: body[8 * n..].iter().map(|&b| b == 2).collect(),
         rays: u64::from_le_bytes(*rays),
     })
 }

@@ -42,6 +42,9 @@ pub struct Reference {
     /// True where errors are to be measured: every sub-pixel sees a surface that faces the light and lies in front of
     /// it, the cosines between the direction to the light's centre and both normals over 0.1.
     pub valid: Vec<bool>,
+    /// True where every sub-pixel sees such a surface and the smallest of these cosines lies between 0 and 0.1: errors
+    /// there are a measure of their own.
+    pub grazing: Vec<bool>,
     /// Estimated standard error of the visibility, for the given sub-pixels; on the safe side. Zero where nothing can
     /// stand between the pixel and the light.
     pub error: Vec<f32>,
@@ -63,6 +66,7 @@ impl Reference {
             height: settings.height,
             visibility: pixels.iter().map(|p| p.visibility).collect(),
             valid: pixels.iter().map(|p| p.valid).collect(),
+            grazing: pixels.iter().map(|p| p.grazing).collect(),
             error: pixels.iter().map(|p| p.error).collect(),
             rays: pixels.iter().map(|p| u64::from(p.rays)).sum(),
         }

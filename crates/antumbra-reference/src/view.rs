@@ -23,6 +23,8 @@ pub struct Pixel {
     pub visibility: f32,
     /// See [`crate::Reference::valid`].
     pub valid: bool,
+    /// See [`crate::Reference::grazing`].
+    pub grazing: bool,
     /// Estimated standard error of the visibility.
     pub error: f32,
     /// Shadow rays that were traced; none where nothing can stand between the pixel and the light.
@@ -105,11 +107,11 @@ impl<'a> View<'a> {
     }
 
     fn pixel(&self, x: u32, y: u32, buffers: &mut Buffers) -> Pixel {
-        let valid = self.find_receivers(x, y, buffers);
+        let facing = self.find_receivers(x, y, buffers);
         let live = buffers.receivers.iter().flatten();
         let from = Aabb::of_points(live.map(|r| r.origin));
         if from.is_empty() {
-            return Pixel { visibility: 1.0, valid, error: 0.0, rays: 0 };
+            return Pixel { visibility: 1.0, valid: false, grazing: false, error: 0.0, rays: 0 };
         }
         self.aim(self.pattern.shuffle(u64::from(y) * u64::from(self.width) + u64::from(x)), buffers);
         Shaft::new(from, self.light_bounds()).entries(self.tracer.bvh(), &mut buffers.entries);
@@ -120,13 +122,14 @@ impl<'a> View<'a> {
             let Buffers { packets, entries, scratch, hidden, .. } = buffers;
             self.tracer.target().occluded(packets, entries, scratch, hidden);
         }
-        self.count(valid, buffers)
+        self.count(facing, buffers)
     }
 
-    /// Traces the primary rays; true if the pixel is valid.
-    fn find_receivers(&self, x: u32, y: u32, buffers: &mut Buffers) -> bool {
+    /// Traces the primary rays; the smallest cosine between the direction to the light and either normal, negative
+    /// where a sub-pixel sees no surface.
+    fn find_receivers(&self, x: u32, y: u32, buffers: &mut Buffers) -> f64 {
         buffers.receivers.clear();
-        let mut valid = true;
+        let mut least = f64::INFINITY;
         for points in self.pattern.sub_pixels.chunks(LANES) {
             let mut packet = Packet::unused();
             for (lane, p) in points.iter().enumerate() {
@@ -139,7 +142,7 @@ impl<'a> View<'a> {
                     let direction = Vec3::from(packet.direction.map(|d| d[lane]));
                     self.tracer.hit(self.camera.eye, direction, t, id)
                 });
-                valid &= hit.is_some_and(|h| self.is_valid(&h));
+                least = hit.as_ref().map_or(-1.0, |h| self.facing_of(h)).min(least);
                 buffers.receivers.push(hit.map(|h| Receiver {
                     origin: self.tracer.off_surface(&h),
                     normal: h.normal.as_vec3(),
@@ -147,7 +150,7 @@ impl<'a> View<'a> {
                 }));
             }
         }
-        valid
+        least
     }
 
     /// Direction through an image position, in pixels; as long as the view depth of 1 metre, so that the near and the
@@ -161,9 +164,10 @@ impl<'a> View<'a> {
         d.as_vec3()
     }
 
-    fn is_valid(&self, hit: &Hit) -> bool {
+    /// The smaller of the cosines at the receiver and at the light.
+    fn facing_of(&self, hit: &Hit) -> f64 {
         let to_light: DVec3 = (self.light.center.as_dvec3() - hit.position).normalize();
-        hit.normal.dot(to_light) > LEAST_COSINE && -to_light.dot(self.facing.as_dvec3()) > LEAST_COSINE
+        hit.normal.dot(to_light).min(-to_light.dot(self.facing.as_dvec3()))
     }
 
     /// Box around the light.
@@ -207,7 +211,7 @@ impl<'a> View<'a> {
     /// The squared difference of two neighbours overestimates the sum of their variances by the difference of their
     /// strata, so the estimate is on the safe side [Cochran 1977, section 5A.12]. Where all agree, details smaller than
     /// a stratum may have been missed: half a stratum is that error's largest standard deviation.
-    fn count(&self, valid: bool, buffers: &Buffers) -> Pixel {
+    fn count(&self, facing: f64, buffers: &Buffers) -> Pixel {
         let n = self.pattern.light.len() as f32;
         let (mut seen, mut differing, mut rays) = (0, 0, 0);
         for (&(open, missing), hidden) in buffers.open.iter().zip(&buffers.hidden) {
@@ -220,7 +224,8 @@ impl<'a> View<'a> {
         let missed = if proven { 0.0 } else { 0.25 };
         Pixel {
             visibility: seen as f32 / n,
-            valid,
+            valid: facing > LEAST_COSINE,
+            grazing: facing > 0.0 && facing <= LEAST_COSINE,
             error: (differing as f32 + missed).sqrt() / n,
             rays: if proven { 0 } else { rays },
         }

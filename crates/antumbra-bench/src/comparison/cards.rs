@@ -103,7 +103,7 @@ fn metrics(entry: &Entry) -> Markup {
         div {
             h4 { "Error" }
             dl.numbers {
-                @for metric in &METRICS[..7] {
+                @for metric in &METRICS[..8] {
                     div title=(metric.help) { dt { (metric.heading) } dd { (text::or_dash(metric.of(entry))) } }
                 }
                 div { dt { "Largest error" } dd { (largest) } }

@@ -32,7 +32,7 @@ fn of_class(pixels: u64, value: f64) -> Option<f64> {
 }
 
 /// Columns of the page's table.
-pub const METRICS: [Metric; 9] = [
+pub const METRICS: [Metric; 10] = [
     Metric {
         bar: true,
         ..metric("Average error", "Mean |error| where the truth is under 0.999: shadow and penumbra", |e| {
@@ -47,6 +47,11 @@ pub const METRICS: [Metric; 9] = [
     metric("Acne", "False darkness: mean of 1 - visibility where the truth is over 0.999", |e| {
         of_class(e.metrics.counts.lit, e.metrics.acne)
     }),
+    metric(
+        "Grazing",
+        "Mean |error| in shadow where the light is grazing: cosines of 0 to 0.1, left out elsewhere",
+        |e| of_class(e.grazing.counts.shadowed, e.grazing.average_error),
+    ),
     Metric { more_is_better: true, ..metric("SSIM", "Structural similarity; 1 is equal", |e| Some(e.metrics.ssim)) },
     metric("FLIP", "Mean FLIP error, the perceived difference; 0 is equal", |e| Some(e.metrics.flip)),
     Metric {
@@ -71,6 +76,7 @@ pub fn terminal(comparison: &Comparison) -> String {
         number("p99", "99th percentile of |error|", |e| e.metrics.p99),
         number("leak", "Mean visibility in the umbra", |e| e.metrics.leak),
         number("acne", "Mean darkness where lit", |e| e.metrics.acne),
+        number("grazing", "Mean |error| in shadow where the light is grazing", |e| e.grazing.average_error),
         number("SSIM", "Structural similarity", |e| e.metrics.ssim),
         number("FLIP", "Mean FLIP error", |e| e.metrics.flip),
         column("ms", "GPU time of the shadow alone", "ms", |e: &&Entry| {
@@ -106,6 +112,7 @@ pub fn csv<'a>() -> Vec<Column<(&'a Comparison, &'a Entry)>> {
         real("max", |e| e.metrics.max),
         real("leak", |e| e.metrics.leak),
         real("acne", |e| e.metrics.acne),
+        real("grazing_error", |e| e.grazing.average_error),
         real("ssim", |e| e.metrics.ssim),
         real("flip", |e| e.metrics.flip),
         real("total_ms", |e| e.cost.total_ms),

@@ -53,6 +53,7 @@ fn judged(spec: &Spec, rendered: Rendered, scene: &LoadedScene, truth: &Truth) -
         spec: spec.text.clone(),
         settings: spec.settings.clone(),
         metrics: truth.metrics(&spec.text, &visibility)?,
+        grazing: truth.grazing_metrics(&spec.text, &visibility)?,
         heat_map: truth.heat_map(&spec.text, &visibility)?,
         cost,
         image: scene.shaded(&visibility)?,

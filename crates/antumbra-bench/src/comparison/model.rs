@@ -1,7 +1,7 @@
 //! Results of a comparison.
 
 use crate::measure::Cost;
-use antumbra_metrics::{Metrics, RgbImage};
+use antumbra_metrics::{ErrorMetrics, Metrics, RgbImage};
 use serde::Serialize;
 
 /// Results of a comparison. Images are row-major with row 0 on top.
@@ -66,6 +66,8 @@ pub struct Entry {
     /// Error metrics.
     #[serde(rename = "figures")]
     pub metrics: Metrics,
+    /// Errors where the light is grazing, which `metrics` leave out.
+    pub grazing: ErrorMetrics,
     /// Time and memory.
     #[serde(skip)]
     pub cost: Cost,
