@@ -75,9 +75,12 @@ impl Truth {
         self.against(spec, visibility, metrics)
     }
 
-    /// The same over the pixels where the light is grazing, which [`Truth::metrics`] leaves out.
-    pub fn grazing_metrics(&self, spec: &str, visibility: &[f32]) -> Result<ErrorMetrics, Error> {
-        self.against(spec, visibility, |test, truth, _| error_metrics(test, truth, &self.reference.grazing))
+    /// The same over the pixels where the light is grazing, which [`Truth::metrics`] leaves out; `None` without such
+    /// pixels.
+    pub fn grazing_metrics(&self, spec: &str, visibility: &[f32]) -> Result<Option<ErrorMetrics>, Error> {
+        let grazing = &self.reference.grazing;
+        let some = grazing.contains(&true);
+        some.then(|| self.against(spec, visibility, |test, truth, _| error_metrics(test, truth, grazing))).transpose()
     }
 
     /// Signed error of a technique's visibility as colours.

@@ -149,13 +149,14 @@ fn check(scene: &Scene, settings: &Settings) -> Result<(), ReferenceError> {
     if let Some((_, name)) = named.into_iter().find(|(value, _)| *value == 0) {
         return Err(ReferenceError::Zero(name));
     }
-    let right = scene.camera.basis().0;
-    if !(right.is_finite() && scene.camera.eye.is_finite()) {
+    let camera = &scene.camera;
+    if !(camera.eye.is_finite() && camera.target.is_finite() && camera.eye != camera.target) {
         return Err(ReferenceError::Degenerate("camera"));
     }
     let light = &scene.light;
-    if !(light.basis().0.is_finite()
-        && light.center.is_finite()
+    if !(light.center.is_finite()
+        && light.target.is_finite()
+        && light.center != light.target
         && light.size.is_finite()
         && light.size.min_element() >= 0.0)
     {

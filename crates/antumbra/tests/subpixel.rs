@@ -144,7 +144,7 @@ fn lists_that_exceed_the_budget_are_made_strip_by_strip() {
     let scene = under_point("fence");
     for filter in ["box", "gaussian"] {
         let spec = |budget| format!("subpixel:filter={filter},map=2048,statistics=true,budget={budget}");
-        let [small, large] = [1, 256].map(|budget| drawn_after(&scene, &spec(budget), 4));
+        let [small, large] = [1, 256].map(|budget| drawn_after(&scene, &spec(budget), 8));
         assert!(small.stats["strips"] > 1.0, "{:?}", small.stats);
         assert_eq!(large.stats["strips"], 1.0);
         let differing = small.visibility.iter().zip(&large.visibility).filter(|(a, b)| a != b).count();

@@ -50,7 +50,7 @@ pub const METRICS: [Metric; 10] = [
     metric(
         "Grazing",
         "Mean |error| in shadow where the light is grazing: cosines of 0 to 0.1, left out elsewhere",
-        |e| of_class(e.grazing.counts.shadowed, e.grazing.average_error),
+        |e| e.grazing.and_then(|g| of_class(g.counts.shadowed, g.average_error)),
     ),
     Metric { more_is_better: true, ..metric("SSIM", "Structural similarity; 1 is equal", |e| Some(e.metrics.ssim)) },
     metric("FLIP", "Mean FLIP error, the perceived difference; 0 is equal", |e| Some(e.metrics.flip)),
@@ -76,7 +76,9 @@ pub fn terminal(comparison: &Comparison) -> String {
         number("p99", "99th percentile of |error|", |e| e.metrics.p99),
         number("leak", "Mean visibility in the umbra", |e| e.metrics.leak),
         number("acne", "Mean darkness where lit", |e| e.metrics.acne),
-        number("grazing", "Mean |error| in shadow where the light is grazing", |e| e.grazing.average_error),
+        column("grazing", "Mean |error| in shadow where the light is grazing", "", |e: &&Entry| {
+            e.grazing.map_or("-".to_owned(), |g| format!("{:.4}", g.average_error))
+        }),
         number("SSIM", "Structural similarity", |e| e.metrics.ssim),
         number("FLIP", "Mean FLIP error", |e| e.metrics.flip),
         column("ms", "GPU time of the shadow alone", "ms", |e: &&Entry| {
@@ -112,7 +114,7 @@ pub fn csv<'a>() -> Vec<Column<(&'a Comparison, &'a Entry)>> {
         real("max", |e| e.metrics.max),
         real("leak", |e| e.metrics.leak),
         real("acne", |e| e.metrics.acne),
-        real("grazing_error", |e| e.grazing.average_error),
+        text("grazing_error", |(_, e)| e.grazing.map_or(String::new(), |g| format!("{:?}", g.average_error))),
         real("ssim", |e| e.metrics.ssim),
         real("flip", |e| e.metrics.flip),
         real("total_ms", |e| e.cost.total_ms),

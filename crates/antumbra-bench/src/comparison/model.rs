@@ -66,8 +66,8 @@ pub struct Entry {
     /// Error metrics.
     #[serde(rename = "figures")]
     pub metrics: Metrics,
-    /// Errors where the light is grazing, which `metrics` leave out.
-    pub grazing: ErrorMetrics,
+    /// Errors where the light is grazing, which `metrics` leave out; `None` without such pixels.
+    pub grazing: Option<ErrorMetrics>,
     /// Time and memory.
     #[serde(skip)]
     pub cost: Cost,

@@ -125,7 +125,8 @@ impl<'a> FrustumFit<'a> {
         }
         let half_light = self.scene.light.size * 0.5;
         // Receivers beyond the reach of casters are lit, casters beyond that of receivers are of no use.
-        let tan = self.casting.reach.min(self.seen.reach(half_light, self.casting.nearest_q));
+        let nearest_q = self.deepest.as_ref()?.nearest_q;
+        let tan = self.casting.reach.min(self.seen.reach(half_light, nearest_q));
         let widest = tan.max_element();
         (widest > 0.0).then(|| {
             (tan.max(Vec2::splat(widest / MAX_ELONGATION)) * 1.01).clamp(Vec2::splat(1e-3), Vec2::splat(MAX_TAN))
@@ -134,7 +135,7 @@ impl<'a> FrustumFit<'a> {
 
     /// The frustum, once the iterator has ended.
     pub fn finish(self) -> ShadowFrustum {
-        let Some(tan_half) = self.tan_half() else {
+        let Some(tan_half) = self.tan_half().filter(|_| !self.seen.is_empty()) else {
             return ShadowFrustum::around(&self.scene.light, &self.scene.bounds());
         };
         let (within, nearest_q) = (self.within, self.casting.nearest_q);
@@ -160,7 +161,7 @@ impl Iterator for FrustumFit<'_> {
             0 => run.in_world().for_each(|corners| self.seen.add(&clipped(&corners, &self.view_planes), light, None)),
             1 => {
                 let deepest = self.deepest.get_or_insert_with(|| DeepestSurface::over(&self.seen));
-                run.in_light_space().for_each(|corners| deepest.add(corners));
+                run.in_light_space().for_each(|corners| deepest.add(corners, receiver_only));
             }
             2 if receiver_only => {}
             2 => {
@@ -255,6 +256,8 @@ struct DeepestSurface {
     cells: LightGrid,
     /// Inverse distance as an affine function of the tangent: (x, y, constant); infinite where there is nothing.
     planes: Vec<Vec3>,
+    /// Of the nearest caster of all.
+    nearest_q: f32,
 }
 
 impl DeepestSurface {
@@ -262,12 +265,15 @@ impl DeepestSurface {
         let nothing = Vec3::new(0.0, 0.0, f32::INFINITY);
         // Shadows reach visible surfaces from casters that project a little beside them.
         let cells = LightGrid::over(seen.low, seen.high);
-        DeepestSurface { cells, planes: vec![nothing; LightGrid::COUNT] }
+        DeepestSurface { cells, planes: vec![nothing; LightGrid::COUNT], nearest_q: 0.0 }
     }
 
-    fn add(&mut self, corners: [Vec3; 3]) {
+    fn add(&mut self, corners: [Vec3; 3], receiver_only: bool) {
         let Some(plane) = plane_of(&corners) else { return };
         let polygon = clipped(&corners, &self.cells.border());
+        if !receiver_only {
+            self.nearest_q = polygon.iter().fold(self.nearest_q, |q, c| q.max(1.0 / c.z));
+        }
         let mut planes = std::mem::take(&mut self.planes);
         self.cells.for_each(&polygon, |cell, t| {
             if plane.dot(t.extend(1.0)) < planes[cell].dot(t.extend(1.0)) {
