@@ -1,6 +1,6 @@
 //! A square parallel to the light over the ground, whose shadow has a closed form.
 
-use crate::common::closed_form::{Over, ground_points};
+use crate::common::closed_form::{Occluder, ground_points};
 use crate::common::{camera, drawn, light};
 use crate::{SIZE, in_range};
 use antumbra_scene::Scene;
@@ -17,7 +17,7 @@ struct Off {
 }
 
 /// A square over the ground under a light with these edges, in metres.
-fn square(over: &Over, light_size: [f32; 2]) -> Scene {
+fn square(over: &Occluder, light_size: [f32; 2]) -> Scene {
     let mut light = light([0.0, 3.0, 0.0], [0.0; 3], 0.0);
     light.size = light_size.into();
     over.scene(camera([1.2, 2.4, 2.6], [0.0, 0.0, 0.0], 50.0), light)
@@ -25,7 +25,7 @@ fn square(over: &Over, light_size: [f32; 2]) -> Scene {
 
 /// Along an edge of no length a shadow ends from one point to the next, and between two texels of the map. What lies
 /// nearer than one texel to such an end, of a map with `map` texels per side, is not judged.
-fn error(over: &Over, light_size: [f32; 2], map: u32, rest: &str) -> Off {
+fn error(over: &Occluder, light_size: [f32; 2], map: u32, rest: &str) -> Off {
     let scene = square(over, light_size);
     let exact = over.picture(&scene, SIZE);
     let points = ground_points(&scene.camera, SIZE);
@@ -51,7 +51,7 @@ fn error(over: &Over, light_size: [f32; 2], map: u32, rest: &str) -> Off {
     Off { mean: sum / judged as f64, largest, excused }
 }
 
-const OVER: Over = Over { center: [0.1, 1.0, -0.05], half: [0.45, 0.35] };
+const OCCLUDER: Occluder = Occluder { center: [0.1, 1.0, -0.05], half: [0.45, 0.35] };
 
 #[test]
 fn the_square_agrees_with_its_closed_form() {
@@ -62,7 +62,7 @@ fn the_square_agrees_with_its_closed_form() {
         (512, ",window=16", 0.01, 0.06),
         (512, "", 0.015, 0.09),
     ] {
-        let found = error(&OVER, [0.8; 2], map, rest);
+        let found = error(&OCCLUDER, [0.8; 2], map, rest);
         assert!(found.mean < mean && found.largest < largest, "map={map}{rest}: {found:?}");
     }
 }
@@ -70,7 +70,7 @@ fn the_square_agrees_with_its_closed_form() {
 #[test]
 fn one_pass_and_two_give_the_same_of_a_square() {
     for rest in ["", ",hierarchy=false"] {
-        let [one, two] = [1, 2].map(|passes| error(&OVER, [0.8; 2], 100, &format!(",passes={passes}{rest}")));
+        let [one, two] = [1, 2].map(|passes| error(&OCCLUDER, [0.8; 2], 100, &format!(",passes={passes}{rest}")));
         assert_eq!(one, two, "{rest}");
     }
 }
@@ -84,7 +84,7 @@ fn a_line_and_a_point_of_light_are_lights() {
         ([1.6, 0.1], 0.0033, 0.033, 0.0),
     ] {
         for rest in ["", ",window=16"] {
-            let found = error(&OVER, light_size, 512, rest);
+            let found = error(&OCCLUDER, light_size, 512, rest);
             let holds = found.mean < mean && found.largest < largest && found.excused <= excused;
             assert!(holds, "light {light_size:?}, map=512{rest}: {found:?}");
         }
