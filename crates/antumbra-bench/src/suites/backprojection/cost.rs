@@ -63,7 +63,7 @@ fn over<'a>(trials: &'a [Trial], spec: &str, x: impl Fn(&Trial) -> f64) -> Vec<(
 }
 
 fn plot(x: &str, curves: Vec<Curve>, guides: &[(&'static str, f64)]) -> Content {
-    Lines::new(x, "GPU milliseconds a frame", curves).guides(guides).into()
+    Lines::new(x, "GPU milliseconds per frame", curves).guides(guides).into()
 }
 
 fn curves<'a>(runs: impl Fn(&str) -> Vec<(f64, &'a Run)>) -> Vec<Curve> {
