@@ -17,17 +17,17 @@ struct Off {
 }
 
 /// A square over the ground under a light with these edges, in metres.
-fn square(over: &Occluder, light_size: [f32; 2]) -> Scene {
+fn square(occluder: &Occluder, light_size: [f32; 2]) -> Scene {
     let mut light = light([0.0, 3.0, 0.0], [0.0; 3], 0.0);
     light.size = light_size.into();
-    over.scene(camera([1.2, 2.4, 2.6], [0.0, 0.0, 0.0], 50.0), light)
+    occluder.scene(camera([1.2, 2.4, 2.6], [0.0, 0.0, 0.0], 50.0), light)
 }
 
 /// Along an edge of no length a shadow ends from one point to the next, and between two texels of the map. What lies
 /// nearer than one texel to such an end, of a map with `map` texels per side, is not judged.
-fn error(over: &Occluder, light_size: [f32; 2], map: u32, rest: &str) -> Off {
-    let scene = square(over, light_size);
-    let exact = over.picture(&scene, SIZE);
+fn error(occluder: &Occluder, light_size: [f32; 2], map: u32, rest: &str) -> Off {
+    let scene = square(occluder, light_size);
+    let exact = occluder.image(&scene, SIZE);
     let points = ground_points(&scene.camera, SIZE);
     let picture = in_range(&scene, &format!("ssm:map={map}{rest}"));
     let tan_half = drawn(&scene, SIZE).frame.frustum.tan_half.as_dvec2();
@@ -36,7 +36,7 @@ fn error(over: &Occluder, light_size: [f32; 2], map: u32, rest: &str) -> Off {
     for ((exact, point), v) in exact.iter().zip(&points).zip(&picture) {
         let (Some(exact), Some(p)) = (exact, point) else { continue };
         let in_shadow = *exact < 0.999;
-        let beside = |axis: DVec3| [p - axis, p + axis].map(|p| over.visibility(&scene.light, p));
+        let beside = |axis: DVec3| [p - axis, p + axis].map(|p| occluder.visibility(&scene.light, p));
         let ends = |edge: f32, axis: DVec3| edge == 0.0 && beside(axis).iter().any(|v| v != exact);
         if ends(light_size[0], DVec3::X * texel.x) || ends(light_size[1], DVec3::Z * texel.y) {
             excused += usize::from(in_shadow);

@@ -87,10 +87,10 @@ fn sections(all: &[(&Occluder, Sweeps)]) -> Vec<Section> {
             "Size of the map (figure 17)",
             format!(
                 "Light of 0.1. Up to {LARGEST_FLAT} texels per side one flat map as in the paper, above it levels with \
-                 window=16, which agree with the flat map to about 0.001 (see the section on levels). In the \
-                 paper the error falls until about 200 x 200 texels and is constant above. It has spikes for the \
-                 square, whose edges are parallel to the map's. Two passes have a smaller error than one on closed meshes and \
-                 the same error on the square. The axis ends at 0.08.",
+                 window=16, which agree with the flat map to about 0.001 (see the section on levels). In \
+                 the paper the error falls until about 200 x 200 texels and is constant above. It has spikes for the \
+                 square, whose edges are parallel to the map's. Two passes have a smaller error than one on closed \
+                 meshes and the same error on the square. The axis ends at 0.08.",
             ),
             "texels per side of the map",
             all,
