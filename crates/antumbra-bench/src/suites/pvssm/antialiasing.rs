@@ -110,8 +110,8 @@ impl Antialiased {
         let title = format!("grid, a small light, {SIDE} x {SIDE} pixels");
         let text = format!(
             "A grid over a floor that extends to the horizon, a map of {MAP} texels; the reference is the same map at \
-             32 x 32 samples per pixel, {} ms. The paper reports 280 frames per second, and 30 for 8 x 8 samples, which \
-             look worse.",
+             32 x 32 samples per pixel, {} ms. The paper reports 280 frames per second, and 30 for 8 x 8 samples, \
+             which look worse.",
             text::ms(self.row(PLAIN, REFERENCE).ms)
         );
         let table = Table::new(&columns, title, &self.rows);

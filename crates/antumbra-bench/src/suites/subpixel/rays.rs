@@ -146,8 +146,8 @@ impl Compared {
             ),
             Section::new(
                 "Ours, rays, ten times the difference (figure 8)",
-                "The difference is black where errors are not measured: in pixels that see a silhouette of the receiver or a \
-                 surface that faces away from the light.",
+                "The difference is black where errors are not measured: in pixels that see a silhouette of the \
+                 receiver or a surface that faces away from the light.",
                 vec![Content::Gallery(
                     self.cases
                         .into_iter()
