@@ -83,9 +83,9 @@ impl Cost {
         if gpu.is_software() { self.wall_ms } else { self.total_ms }
     }
 
-    /// Milliseconds of the passes that `is` selects; none if no pass of them has a time.
-    pub fn ms_of(&self, is: impl Fn(&Pass) -> bool) -> Option<f64> {
-        let times = self.passes.iter().filter(|pass| is(pass)).filter_map(|pass| pass.ms);
+    /// Milliseconds of the passes that `selects` accepts; `None` if none of them has a time.
+    pub fn ms_of(&self, selects: impl Fn(&Pass) -> bool) -> Option<f64> {
+        let times = self.passes.iter().filter(|pass| selects(pass)).filter_map(|pass| pass.ms);
         times.reduce(|sum, ms| sum + ms)
     }
 }
@@ -197,7 +197,8 @@ fn frames_to_warm_up(planned: u32, frame: u32, wall_ms: f64) -> u32 {
     if frame == 0 && wall_ms > LONG { 1 } else { planned }
 }
 
-/// Records and submits work and waits for it. Returns the GPU time of each pass and the wall time from submission on.
+/// Records work, submits it and waits for it. Returns the GPU time of each pass and the wall time from submission to
+/// completion, milliseconds.
 fn submit(
     gpu: &Gpu,
     timer: &mut Timer,
@@ -267,7 +268,7 @@ impl Samples {
     }
 }
 
-/// The middle value, or the mean of the two in the middle; 0 of nothing.
+/// The middle value, or the mean of the two in the middle; 0 if there are no values.
 pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     let half = values.len() / 2;
@@ -283,7 +284,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_long_second_frame_leaves_the_frames_that_count() {
+    fn only_a_long_first_frame_shortens_the_warm_up() {
         let planned = |frame, ms| frames_to_warm_up(WARM_UP, frame, ms);
         assert_eq!([planned(0, 900.0), planned(0, 1100.0), planned(1, 1100.0)], [2, 1, 2]);
     }
@@ -294,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn passes_that_a_frame_did_without_count_as_zero() {
+    fn a_pass_that_is_absent_from_a_frame_counts_as_zero() {
         let mut samples = Samples::default();
         samples.push(vec![("map".into(), Some(2.0)), ("extra".into(), Some(9.0))]);
         samples.push(vec![("map".into(), Some(4.0))]);

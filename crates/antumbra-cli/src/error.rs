@@ -9,12 +9,12 @@ use std::path::PathBuf;
 /// Why a command failed.
 #[derive(Debug, thiserror::Error)]
 pub enum CliError {
-    /// An output that cannot be written, found before the work.
+    /// An output cannot be written, as a check before the work found.
     #[error("cannot write {}: {why}", path.display())]
     Unwritable {
         /// The file or folder.
         path: PathBuf,
-        /// The obstacle and the way out.
+        /// The reason and the remedy.
         why: String,
     },
     /// Loading, rendering, tracing or measuring failed.

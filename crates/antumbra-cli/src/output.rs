@@ -65,7 +65,7 @@ fn ending(text: &str) -> String {
 fn wrong_ending(found: &str, wanted: &str) -> String {
     match found {
         "" => format!("the file's name should end in {wanted}"),
-        _ => format!("`.{found}` is not written here; the file's name should end in {wanted}"),
+        _ => format!("`.{found}` is not supported here; the file's name should end in {wanted}"),
     }
 }
 
@@ -145,7 +145,7 @@ impl Outputs {
     }
 }
 
-/// Checks before the work whether these files can be written.
+/// Checks whether these files can be written, before the work starts.
 pub fn check_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), CliError> {
     let mut seen: Vec<&Path> = Vec::new();
     for path in paths {
@@ -161,7 +161,7 @@ pub fn check_files<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<(), 
     Ok(())
 }
 
-/// Checks before the work whether a folder can be created, or written to if it exists.
+/// Checks whether a folder can be created, or written to if it exists, before the work starts.
 pub fn check_new_folder(path: &Path) -> Result<(), CliError> {
     let nearest = path.ancestors().map(or_here).find(|p| p.exists()).unwrap_or(Path::new("."));
     check_folder(path, nearest)
@@ -175,7 +175,7 @@ fn check_folder(path: &Path, folder: &Path) -> Result<(), CliError> {
     if !folder.is_dir() {
         return Err(unwritable(path, format_args!("{shown} is a file, not a folder")));
     }
-    temporary(folder).map(drop).map_err(|e| unwritable(path, format_args!("the folder {shown} takes no files: {e}")))
+    temporary(folder).map(drop).map_err(|e| unwritable(path, format_args!("cannot create files in {shown}: {e}")))
 }
 
 fn unwritable(path: &Path, why: impl fmt::Display) -> CliError {

@@ -32,7 +32,7 @@ fn table(info: &TechniqueInfo) -> String {
         let default = match &defaults[s.key] {
             serde_json::Value::String(word) => word.clone(),
             serde_json::Value::Array(list) if list.is_empty() => "none".to_owned(),
-            // As the settings are declared, in single precision.
+            // Settings are declared in single precision.
             serde_json::Value::Number(n) if n.is_f64() => format!("{}", n.as_f64().expect("a float") as f32),
             other => other.to_string(),
         };
@@ -63,7 +63,7 @@ fn every_technique_has_a_page_whose_settings_are_those_of_the_code() {
             None => wrong.push(format!("docs/techniques/{}.md has no lines `{START}` and `{END}`", info.name)),
             Some(new) if new == page => {}
             Some(new) if update => std::fs::write(&file, new).expect("the docs are writable"),
-            Some(_) => wrong.push(format!("docs/techniques/{}.md: the table of settings is old", info.name)),
+            Some(_) => wrong.push(format!("docs/techniques/{}.md: the table of settings is out of date", info.name)),
         }
     }
     assert!(wrong.is_empty(), "{}\n`cargo xtask docs` writes the tables", wrong.join("\n"));

@@ -112,7 +112,7 @@ fn invalid_samples_are_those_that_would_darken_a_bumpy_receiver() {
     let rays = trace_centre(&scene, SIZE, &places("subpixel")).unwrap_or_else(|e| panic!("{e}"));
     let [masked, all] = [true, false].map(|on| drawn_by(&scene, &format!("subpixel:statistics=true,validity={on}")));
     let [with, without] = [&masked, &all].map(|d| differences(d, &rays).iter().sum::<f64>());
-    let valid = masked.stats["valid samples half in shadow"];
+    let valid = masked.stats["valid samples partly in shadow"];
     println!(
         "bumpy: {valid:.1} of 32 samples valid; differences {with:.1} with the validity mask, {without:.1} without"
     );

@@ -6,7 +6,7 @@ mod common;
 use antumbra::techniques::TECHNIQUES;
 use antumbra_reference::Reference;
 use antumbra_scene::Scene;
-use common::closed_form::{Over, ground_points};
+use common::closed_form::{Occluder, ground_points};
 use common::{builtin, camera, compared, cuboid, drawn, ground, light, scene, shadowed, technique, truth, visibility};
 use glam::DVec3;
 use std::sync::OnceLock;
@@ -43,7 +43,7 @@ const SIZE: [u32; 2] = [96, 96];
 
 /// A plane under a large blocker whose umbra fills the picture.
 fn umbra(blocker_half: f32) -> Scene {
-    let blocker = Over { center: [0.0, 1.0, 0.0], half: [blocker_half; 2] };
+    let blocker = Occluder { center: [0.0, 1.0, 0.0], half: [blocker_half; 2] };
     blocker.scene(camera([0.4, 0.8, 0.6], [0.0, 0.0, 0.0], 50.0), light([0.0, 3.0, 0.0], [0.0; 3], 0.6))
 }
 
@@ -75,7 +75,7 @@ fn a_blocker_that_is_too_small_is_caught() {
 
 // ---- a square over a plane ----
 
-const SQUARE: Over = Over { center: [0.0, 1.0, 0.0], half: [0.5, 0.5] };
+const SQUARE: Occluder = Occluder { center: [0.0, 1.0, 0.0], half: [0.5, 0.5] };
 
 fn square(light_edge: f32) -> Scene {
     SQUARE.scene(camera([1.2, 1.1, 2.3], [0.0, 0.0, 0.35], 45.0), light([0.0, 3.0, 0.0], [0.0; 3], light_edge))
@@ -85,7 +85,7 @@ fn square(light_edge: f32) -> Scene {
 /// picture's row that has most of it.
 fn square_errors(spec: &str, edge: f32) -> [Errors; 2] {
     let size = [128, 128];
-    let exact = SQUARE.picture(&square(0.8), size);
+    let exact = SQUARE.image(&square(0.8), size);
     let got = visibility(&square(edge), spec, size);
     let penumbra = |i: usize| exact[i].is_some_and(|e| e > 0.001 && e < 0.999);
     let errors = |pixels: &mut dyn Iterator<Item = usize>| {
@@ -124,7 +124,7 @@ fn broken_settings_of_the_square_are_caught() {
 /// Width of the penumbra of a straight edge, from the distance between visibilities of 0.2 and 0.8: the light is 3 m
 /// above the edge, the ground 1 m below it, so it is a third of the light's width [similar triangles].
 fn penumbra_width(spec: &str, light_edge: f32) -> f64 {
-    let edge = Over { center: [-10.0, 1.0, 0.0], half: [10.0, 20.0] };
+    let edge = Occluder { center: [-10.0, 1.0, 0.0], half: [10.0, 20.0] };
     // Ten times as wide as high: 5 mm a pixel, 80 cm a row.
     let view = camera([1.0, 0.9, 0.0], [1.0, 0.0, 0.0], 5.0);
     let scene = edge.scene(view, light([-3.0, 4.0, 0.0], [-3.0, 0.0, 0.0], light_edge));

@@ -123,7 +123,7 @@ fn numbers_arrive_in_json_and_csv() {
 }
 
 #[test]
-fn the_page_needs_nothing_from_outside_and_escapes_what_it_is_given() {
+fn the_page_has_no_external_resources_and_escapes_text() {
     let folder = tempfile::tempdir().unwrap();
     let mut report = three();
     report.scene = "<script>alert(1)</script>".into();

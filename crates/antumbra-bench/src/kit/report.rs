@@ -56,7 +56,7 @@ pub struct GalleryImage {
     pub image: RgbImage,
 }
 
-/// Configurations in several groups.
+/// Techniques with their settings as points of a plot, in several groups.
 pub struct Scatter {
     /// Names of the groups.
     pub groups: &'static [&'static str],
@@ -67,7 +67,7 @@ pub struct Scatter {
 /// A ratio of the paper beside the measured one.
 #[derive(Clone, Debug, Serialize)]
 pub struct Ratio {
-    /// The quotient.
+    /// The measured quantity.
     pub what: &'static str,
     /// Name of the trial.
     pub trial: String,
@@ -81,7 +81,7 @@ pub struct Ratio {
     pub ours: f64,
 }
 
-/// Circumstances of a report.
+/// What was measured, and where.
 #[derive(Clone, Debug, Serialize)]
 pub struct Context {
     /// Name of the suite.
@@ -150,7 +150,7 @@ impl GalleryImage {
 }
 
 impl Ratio {
-    /// How many times as fast as `base` a run of the same trial is.
+    /// The speed of a run over that of `base`, a run of the same trial.
     pub fn speed(what: &'static str, trial: &Trial, run: &Run, base: &Run, paper: Option<f64>) -> Ratio {
         let (trial, spec, base_spec) = (trial.name.clone(), run.spec.clone(), base.spec.clone());
         Ratio { what, trial, spec, base: base_spec, paper, ours: run.speed_over(base) }
@@ -158,7 +158,7 @@ impl Ratio {
 }
 
 impl Context {
-    /// The frames of a time.
+    /// Number of frames that each time is measured over, in words.
     pub fn timed_frames(&self) -> String {
         match self.frames {
             1 => "one frame".to_owned(),
@@ -168,7 +168,7 @@ impl Context {
 }
 
 impl Report {
-    /// The clock of the milliseconds.
+    /// The clock of the milliseconds, in words.
     pub fn clock(&self) -> &'static str {
         let mut by_wall = self.trials.iter().flat_map(|t| &t.runs).map(|run| run.cost.timing == Timing::Wall);
         let first = by_wall.next().unwrap_or(false);
@@ -179,7 +179,7 @@ impl Report {
         }
     }
 
-    /// The tables with the sections that they are in.
+    /// All tables, each with its section.
     pub fn tables(&self) -> impl Iterator<Item = (&Section, &Table)> {
         self.sections.iter().flat_map(|section| {
             section.contents.iter().filter_map(move |content| match content {

@@ -1,4 +1,4 @@
-//! The files of a suite, with made-up numbers, and a trial, with measured ones.
+//! The files of a suite from made-up measurements, and one trial that is measured.
 
 use super::columns;
 use super::made_up::{run, trial};
@@ -67,7 +67,7 @@ fn all_files_are_there_and_nothing_else() {
 }
 
 #[test]
-fn the_page_needs_nothing_from_outside_and_escapes_what_it_is_given() {
+fn the_page_has_no_external_resources_and_escapes_text() {
     let page = text(&written(&report()), "made-up.html");
     assert!(!page.contains("http://") && !page.contains("https://") && !page.contains("NaN"));
     assert!(page.contains("A &lt;made-up&gt; suite") && page.contains("GPU timestamps"));
@@ -79,7 +79,7 @@ fn the_page_needs_nothing_from_outside_and_escapes_what_it_is_given() {
 }
 
 #[test]
-fn the_paper_stands_beside_ours_in_json() {
+fn json_has_the_paper_s_ratio_beside_the_measured_one() {
     let json: serde_json::Value = serde_json::from_str(&text(&written(&report()), "made-up.json")).unwrap();
     assert_eq!((&json["ratios"][0]["paper"], &json["ratios"][0]["ours"]), (&5.5.into(), &2.0.into()));
     assert_eq!((&json["adapter"], &json["software"]), (&"llvmpipe (LLVM 15) | *".into(), &true.into()));
@@ -88,7 +88,7 @@ fn the_paper_stands_beside_ours_in_json() {
 }
 
 #[test]
-fn csv_has_a_row_a_run_and_a_column_a_figure_of_work() {
+fn csv_has_a_row_per_run_and_a_column_per_count() {
     let text = text(&written(&report()), "made-up.csv");
     let mut csv = csv::Reader::from_reader(text.as_bytes());
     let maps = csv.headers().unwrap().iter().position(|h| h == "maps").unwrap();

@@ -33,7 +33,7 @@ pub fn grey(width: u32, height: u32, values: &[f32]) -> Result<Vec<u8>, ReportEr
     png(&bytes, width, height, ExtendedColorType::L8)
 }
 
-/// A PNG as the address of an embedded image.
+/// A PNG as a data URL.
 pub fn embedded(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", BASE64_STANDARD.encode(png))
 }

@@ -115,7 +115,7 @@ pub fn plot(points: &[Point], groups: &[&str]) -> Markup {
     let labels: Vec<_> =
         points.iter().zip(&shown).map(|(p, shown)| if *shown { p.label.as_str() } else { "" }).collect();
     let areas = place_labels(&dots, &labels);
-    let titles = Titles { x: "GPU milliseconds a frame", y: "average error", less_is_better: true };
+    let titles = Titles { x: "GPU milliseconds per frame", y: "average error", less_is_better: true };
     let drawn = |i: usize| {
         let label = shown[i].then(|| label(&points[i], &areas[i]));
         let drawn = html! { (dot(&points[i], dots[i], best[i])) @if let Some(label) = label { (label) } };

@@ -225,7 +225,7 @@ fn sweep_section(trial: &Trial, what: &str, criterion: &str, own: fn(u32) -> Vec
         FIXED.map(|n| n.to_string()).join(", ")
     );
     let curves = widths().map(adaptive).chain(of_cells).chain(widths().map(fixed));
-    let lines = Lines::new("GPU milliseconds a frame", "average error", curves).less_is_better();
+    let lines = Lines::new("GPU milliseconds per frame", "average error", curves).less_is_better();
     Section::new(format!("{what} and the filter"), text, vec![lines.into()])
 }
 

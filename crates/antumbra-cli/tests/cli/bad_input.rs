@@ -108,7 +108,7 @@ fn unwritable_outputs_are_refused_before_the_work() {
 }
 
 #[test]
-fn without_any_adapter_the_way_out_is_told() {
+fn a_missing_adapter_is_an_error_with_a_remedy() {
     let place = Place::new();
     for arguments in [format!("render builtin:fence {OUT}"), "compare builtin:fence -t hard -o report".to_owned()] {
         let mut command = place.command(&arguments);

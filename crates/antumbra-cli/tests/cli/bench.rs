@@ -1,4 +1,4 @@
-//! What `bench` refuses and how it stops. A whole suite takes too long for a test; its files are tested from inside.
+//! What `bench` refuses. A whole suite takes too long for a test; tests of `antumbra-bench` check its files.
 
 use crate::{Place, check_refusal, finish};
 
@@ -32,7 +32,7 @@ fn wrong_values_are_refused_before_the_work() {
 }
 
 #[test]
-fn without_any_adapter_the_way_out_is_told() {
+fn a_missing_adapter_is_an_error() {
     let place = Place::new();
     let arguments = "bench adaptive -o results";
     let mut command = place.command(arguments);

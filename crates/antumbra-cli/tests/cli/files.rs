@@ -14,7 +14,7 @@ fn npy(place: &Place, name: &str) -> (Vec<u64>, Vec<f32>) {
 }
 
 #[test]
-fn a_mesh_becomes_a_picture_its_visibility_and_its_cost() {
+fn render_writes_an_image_its_visibility_and_its_stats() {
     let place = Place::new();
     let scene = place.file("animal.obj", animal());
     let run = place.succeeds(&format!(
@@ -89,7 +89,7 @@ fn formats_agree() {
 }
 
 #[test]
-fn the_reference_tells_its_error_and_is_kept() {
+fn the_reference_prints_its_error_and_is_cached() {
     let place = Place::new();
     let trace = "reference builtin:square --size 48x48 --light-samples 256 --visibility v.npy --valid m.npy";
     let first = place.succeeds(trace);
@@ -103,7 +103,7 @@ fn the_reference_tells_its_error_and_is_kept() {
     assert!(second.stdout.contains("read from the cache"), "{second:?}");
     assert_eq!(place.bytes("v.npy"), v);
     let third = place.succeeds(&format!("{trace} --seed 1"));
-    assert!(!third.stdout.contains("cache"), "another seed is another picture: {third:?}");
+    assert!(!third.stdout.contains("cache"), "another seed gives another image: {third:?}");
 }
 
 #[test]

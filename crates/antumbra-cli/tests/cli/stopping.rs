@@ -5,8 +5,8 @@ use crate::Place;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Starts the program, interrupts it in the middle, and insists that it leaves nothing.
-fn interrupted(place: &Place, arguments: &str) {
+/// Interrupts the program while it works; asserts the exit code and that no file is left.
+fn check_interrupted(place: &Place, arguments: &str) {
     let mut child =
         place.command(arguments).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("the program starts");
     std::thread::sleep(Duration::from_millis(1500));
@@ -20,15 +20,15 @@ fn interrupted(place: &Place, arguments: &str) {
 #[test]
 fn an_interrupted_reference_leaves_nothing() {
     let place = Place::new();
-    interrupted(
+    check_interrupted(
         &place,
         "reference builtin:spheres --size 4096x4096 --light-samples 65536 --visibility v.npy --valid m.npy",
     );
     let kept = std::fs::read_dir(place.path("cache")).map_or(0, Iterator::count);
-    assert_eq!(kept, 0, "nothing half traced is kept");
+    assert_eq!(kept, 0, "no partly traced image is cached");
 }
 
 #[test]
 fn an_interrupted_bench_leaves_nothing() {
-    interrupted(&Place::new(), "bench adaptive -o results --size 32x24 --frames 100000");
+    check_interrupted(&Place::new(), "bench adaptive -o results --size 32x24 --frames 100000");
 }

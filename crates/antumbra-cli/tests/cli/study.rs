@@ -1,4 +1,4 @@
-//! `study`: what it refuses, and a small one.
+//! `study`: what it refuses, and one small study.
 
 use crate::Place;
 

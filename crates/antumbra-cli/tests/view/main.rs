@@ -1,6 +1,6 @@
 //! The real window under a virtual display, driven by commands on its standard input and by the mouse.
 //!
-//! Screenshots are kept in the target's temporary folder; a failure names them.
+//! Screenshots stay in the target's temporary folder; the message of a failure names them.
 #![cfg(all(feature = "viewer", target_os = "linux"))]
 
 mod display;
@@ -34,7 +34,7 @@ fn a_session_at_the_window() {
         let state = window.settled();
         let drawn = state["drawn"][0].as_str().unwrap_or_default().to_owned();
         assert!(drawn.starts_with(technique.name), "{spec}: {state}");
-        // And what it lists can be looked into, picture after picture.
+        // The viewer can show each of its debug views.
         window.ask(json!({"debug_views": 0}));
         let views = window.settled()["debug_views"][0].take();
         for name in views.as_array().expect("a list") {
@@ -57,23 +57,22 @@ fn a_session_at_the_window() {
     let changed = fine.difference(&coarse);
     assert!(changed > 0.0005, "a map of 16 texels looks like one of 1024: {changed}");
 
-    // The wheel goes away from the scene until the light is in the picture; then the mouse drags it: it follows, and so
-    // does the shadow.
+    // The wheel zooms out until the light is in the image. The mouse drags the light, and light and shadow follow.
     window.ask(json!({"technique": {"half": 0, "spec": "hard:map=256"}}));
     window.scroll_away([300.0, 300.0]);
     let before = window.settled();
     let at_first = window.shot("light-before");
     let from = window.handle(&before, "Move");
-    assert!(from[1] > 60.0, "the light is still out of the picture: {before}");
+    assert!(from[1] > 60.0, "the light is outside of the image: {before}");
     window.drag(from, [from[0] + 60.0, from[1] + 5.0]);
     let after = window.settled();
     let later = window.shot("light-after");
     let now = window.handle(&after, "Move");
     assert!((now[0] - from[0] - 60.0).abs() < 4.0 && (now[1] - from[1] - 5.0).abs() < 4.0, "{from:?} to {now:?}");
     assert_eq!(before["light"][1], after["light"][1], "moving does not resize");
-    assert!(at_first.difference(&later) > 0.0005, "the picture is the same wherever the light is");
+    assert!(at_first.difference(&later) > 0.0005, "the image is the same after the light has moved");
 
-    // The scene turns under the mouse, at the picture's lower rim, where no handle is.
+    // A drag at the lower border of the image, where no handle is, orbits the camera.
     window.drag([100.0, 420.0], [180.0, 420.0]);
     window.settled();
     assert!(later.difference(&window.shot("orbited")) > 0.001, "dragging moves nothing");
@@ -117,7 +116,7 @@ fn files_good_and_bad() {
     assert_eq!(state["errors"], json!([]), "{state}");
     window.shot("dropped");
 
-    for (name, text, told) in [
+    for (name, text, named) in [
         ("cut.obj", "v 0 0 0\nv 1 0 0\nf 1 2 9\n", "cut.obj"),
         ("words.ply", "this is no ply", "words.ply"),
         ("strange.xyz", "1 2 3", "strange.xyz"),
@@ -127,13 +126,13 @@ fn files_good_and_bad() {
         window.ask(json!({"drop": bad}));
         let state = window.waited_for(|s| s["errors"][0].is_string());
         let message = state["errors"][0].as_str().unwrap_or_default();
-        assert!(message.contains(told), "{name}: {message}");
-        assert_eq!(state["scene"], json!(model), "a bad file leaves what is open");
+        assert!(message.contains(named), "{name}: {message}");
+        assert_eq!(state["scene"], json!(model), "a bad file leaves the open scene");
         window.shot("message");
         window.ask(json!("dismiss"));
     }
 
-    // Where the desktop has no file dialog the window says so, and what to do instead; it goes on.
+    // Where the desktop has no file dialog, the message names another way to open a file.
     window.ask(json!("choose"));
     let state = window.waited_for(|s| s["errors"][0].is_string());
     let message = state["errors"][0].as_str().unwrap_or_default();
@@ -141,7 +140,7 @@ fn files_good_and_bad() {
     window.shot("no-dialog");
     window.ask(json!("dismiss"));
 
-    // What is saved opens again.
+    // A saved scene can be opened.
     let saved = folder.path().join("saved.toml").display().to_string();
     window.ask(json!({"save_scene": saved}));
     window.ask(json!({"open": saved}));
@@ -151,14 +150,14 @@ fn files_good_and_bad() {
 }
 
 #[test]
-fn the_window_goes_on() {
+fn the_window_survives_resizing_and_a_lost_device() {
     let display = Display::start();
     let mut window = Window::open(&display, &["builtin:square", "-t", &quick("hard"), "-t", &quick("pcf")]);
     window.ask(json!({"resolution": 0.1}));
     window.ask(json!({"technique": {"half": 1, "spec": "vsm:map=64"}}));
     let before = window.settled();
 
-    // As small as it gets, out of sight and back, another scale factor.
+    // The smallest size, a minimised window, another scale factor.
     window.resize([1, 1]);
     window.settled();
     window.resize([900, 600]);
@@ -177,7 +176,7 @@ fn the_window_goes_on() {
     window.ask(json!({"turn": false}));
     window.settled();
 
-    // The device goes, and everything is there again.
+    // A lost device is replaced; techniques and scene stay.
     window.ask(json!("lose_device"));
     let state = window.waited_for(|s| s["lost"] == 1 && s["drawn"][1].is_string());
     assert_eq!((&state["drawn"], &state["scene"]), (&before["drawn"], &before["scene"]));

@@ -1,4 +1,4 @@
-//! Pipe runs that find their way through a lattice without touching each other.
+//! Pipes on random routes through a lattice that do not touch each other, and steel parts around them.
 
 use super::maths::{Frame, Random, TURN, on_circle};
 use super::shapes::MeshBuilder;
@@ -36,7 +36,7 @@ impl Space {
         })
     }
 
-    /// Marks a box.
+    /// Marks the cells of a box as taken.
     pub fn take(&mut self, min: Vec3, max: Vec3) {
         for cell in self.cells(min, max) {
             self.taken[cell] = true;
@@ -59,7 +59,7 @@ pub(super) struct Route {
     pub radius: f32,
 }
 
-/// Finds a way for a pipe of `legs` straight legs along the axes and marks it, or gives up.
+/// Marks a free route of up to `legs` straight legs along the axes. `None` if it has fewer than two.
 pub(super) fn route(space: &mut Space, radius: f32, legs: usize, random: &mut Random) -> Option<Route> {
     let mut cell = space.random_cell(random);
     let around = Vec3::splat(radius + 0.03);
@@ -69,8 +69,8 @@ pub(super) fn route(space: &mut Space, radius: f32, legs: usize, random: &mut Ra
     let shortest = (5.0 * radius / CELL).ceil() as i32 + 1;
     let mut last_axis = 3;
     for _ in 0..legs {
-        let way = (0..6).find_map(|_| {
-            // Along the plant more often than across it or upwards.
+        let leg = (0..6).find_map(|_| {
+            // Along the plant (z) most often, vertically least often.
             let axis = [0, 0, 1, 2, 2, 2][random.below(6)];
             let reach = [22, 14, 60][axis];
             let length = shortest + random.below(reach) as i32;
@@ -80,7 +80,7 @@ pub(super) fn route(space: &mut Space, radius: f32, legs: usize, random: &mut Ra
             let (min, max) = sweep(from, space.point(next));
             (axis != last_axis && space.is_free(min, max)).then_some((axis, next))
         });
-        let Some((axis, next)) = way else { break };
+        let Some((axis, next)) = leg else { break };
         corners.push(space.point(next));
         (cell, last_axis) = (next, axis);
     }
@@ -94,8 +94,8 @@ pub(super) fn route(space: &mut Space, radius: f32, legs: usize, random: &mut Ra
     Some(Route { corners, radius })
 }
 
-/// Rods from which the level legs of a route hang, or posts on which they stand where the ground is nearer. Only
-/// those are made that meet nothing on their way. `level` is the distance between ceilings.
+/// Adds rods from which the horizontal legs of a route hang, or posts where the ground is near. Rods and posts that
+/// would touch something are left out. `level` is the distance between ceilings.
 pub(super) fn hang(m: &mut MeshBuilder, space: &mut Space, route: &Route, level: f32) {
     const SPACING: f32 = 1.5;
     let clear = Vec3::new(0.02, 0.0, 0.02);
@@ -134,7 +134,7 @@ pub(super) fn pipe(m: &mut MeshBuilder, route: &Route) {
         let after = corners.get(i + 1).map(|next| (*next - corner).normalize());
         match (before, after) {
             (Some(a), Some(b)) => {
-                // A quarter circle from the leg that comes to the leg that goes.
+                // A quarter circle from one leg to the next.
                 let center = corner + (a + b) * bend;
                 path.extend((0..=ELBOW).map(|k| {
                     let c = on_circle(0.25 * TURN * k as f32 / ELBOW as f32) * bend;
@@ -166,7 +166,7 @@ fn subdivided(path: &[Vec3], longest: f32) -> Vec<Vec3> {
     result
 }
 
-/// Two bolted collars about the frame's Y axis.
+/// A flange: two collars around the frame's Y axis, bolted together.
 fn flange(m: &mut MeshBuilder, frame: Frame, radius: f32, sides: usize) {
     let (outer, half) = (radius * 1.28 + 0.025, 0.012 + 0.12 * radius);
     m.at(frame).lathe(
@@ -189,7 +189,7 @@ fn flange(m: &mut MeshBuilder, frame: Frame, radius: f32, sides: usize) {
     }
 }
 
-/// A ladder from the frame's origin up along Y, its rungs along X, with hoops around the climber where it is high.
+/// A ladder from the frame's origin up along Y, its rungs along X, with safety hoops from 2.2 m on.
 pub(super) fn ladder(m: &mut MeshBuilder, frame: Frame, height: f32) {
     m.at(frame);
     for side in [-0.22, 0.22] {

@@ -5,7 +5,7 @@ use crate::session::Session;
 use eframe::egui::{self, Align2, Color32, Rect, RichText, vec2};
 use web_time::{Duration, Instant};
 
-/// How long messages of success stay.
+/// How long a message of success stays on the screen.
 const SHOWN: Duration = Duration::from_secs(6);
 
 /// Messages on the screen. Errors stay until they are closed.

@@ -12,7 +12,7 @@ pub trait HostStruct: encase::ShaderType + encase::internal::WriteInto {
     }
 }
 
-/// The WGSL name of a Rust type that can stand in a [`HostStruct`].
+/// The WGSL name of a Rust type that a [`HostStruct`] may have as a field.
 pub trait WgslType {
     /// As written in WGSL.
     const NAME: &'static str;

@@ -19,7 +19,7 @@ pub struct ShaderKey {
     pub parts: ArrayVec<(&'static str, &'static str), 1>,
     /// The element of `StorageTarget`, which shaders import from `package::host`.
     pub target: StorageFormat,
-    /// Source of the module where it is none of ours: kernels of tests.
+    /// Source of a module that is not below `src`: a kernel of a test.
     pub source: Option<Arc<str>>,
 }
 
@@ -164,17 +164,17 @@ mod tests {
         names
     }
 
-    /// The modules that can stand in for the name that a module, or a shared one that it imports, imports from: every
-    /// module of that name.
+    /// The choices of `ShaderKey::parts` for a module: every module of the name that it imports from, itself or through
+    /// `shaders::stored_texel`.
     fn parts_of(text: &str) -> Vec<Option<(&'static str, &'static str)>> {
-        let asks = |name: &str| {
+        let imports = |name: &str| {
             let own = text.contains(&format!("package::{name}::"));
             own || name == "warp" && text.contains("package::shaders::stored_texel::")
         };
-        let Some(name) = ["warp", "soft", "listed", "pair"].into_iter().find(|name| asks(name)) else {
+        let Some(name) = ["warp", "soft", "listed", "pair"].into_iter().find(|name| imports(name)) else {
             return vec![None];
         };
-        // Techniques that are read by a module `soft` have nothing for a lookup.
+        // Some modules `warp` have no function `visible`: a module `soft` filters their maps.
         let serves = |module: &str| !text.contains("package::warp::visible") || module.contains("fn visible(");
         let modules = SOURCES.iter().filter(|(path, text)| path.ends_with(&format!("::{name}")) && serves(text));
         modules.map(|(path, _)| Some((name, path.strip_prefix("package::").unwrap()))).collect()
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn a_name_may_stand_in_several_modules_but_a_resource_in_one() {
+    fn several_modules_may_declare_a_name_but_only_one_a_resource() {
         let own = "import package::shaders::frame::receiver_at;\nstruct Receiver { a: u32 }\nvar<storage, read_write> out: array<u32>;\n\
                    @compute @workgroup_size(1) fn run() {\n let r = receiver_at(vec2(0u), 0.5);\n out[0] = Receiver(u32(r.q)).a;\n}\n";
         let program = Program::compose(&ShaderKey::of_source(own)).unwrap_or_else(|e| panic!("{e}"));

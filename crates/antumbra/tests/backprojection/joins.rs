@@ -1,7 +1,7 @@
 //! Occluders that overlap on the light: joined they are right, summed up they are too dark.
 
 use crate::Judged;
-use crate::common::closed_form::Over;
+use crate::common::closed_form::Occluder;
 use crate::common::{camera, compared, ground, light, quad, scene};
 use antumbra_metrics::Metrics;
 use antumbra_reference::Reference;
@@ -11,8 +11,10 @@ use glam::DVec3;
 const SIZE: [u32; 2] = [96, 96];
 
 /// Two squares of equal shadows from the light's centre, at two heights: one hides what the other does, and more.
-const PAIR: [Over; 2] =
-    [Over { center: [0.15, 1.5, 0.0], half: [0.25, 0.5] }, Over { center: [-0.2, 0.75, 0.1], half: [0.4, 0.55] }];
+const PAIR: [Occluder; 2] = [
+    Occluder { center: [0.15, 1.5, 0.0], half: [0.25, 0.5] },
+    Occluder { center: [-0.2, 0.75, 0.1], half: [0.4, 0.55] },
+];
 
 fn lamp() -> RectLight {
     light([0.0, 3.0, 0.0], [0.0; 3], 0.8)
@@ -29,8 +31,8 @@ fn hidden(p: DVec3) -> ([f64; 2], f64) {
     let light = lamp();
     let each = PAIR.map(|o| 1.0 - o.visibility(&light, p));
     // What both hide is a rectangle too: of a plate at the height of either that is in both projections.
-    let grow = |o: &Over| f64::from(light.center.y) / f64::from(o.center[1]);
-    let edge = |o: &Over, axis: usize, sign: f64| {
+    let grow = |o: &Occluder| f64::from(light.center.y) / f64::from(o.center[1]);
+    let edge = |o: &Occluder, axis: usize, sign: f64| {
         let (p, c) = (p[2 * axis], f64::from(o.center[2 * axis]));
         p + (c + sign * f64::from(o.half[axis]) - p) * grow(o)
     };

@@ -1,4 +1,4 @@
-//! A host's buffers: one mesh of a scene with all of its instances, laid out as asked.
+//! A host's buffers: one mesh of a scene with all of its instances, in a given layout.
 
 use crate::common::gpu;
 use antumbra::Aabb;
@@ -7,14 +7,14 @@ use antumbra_scene::Scene;
 use glam::Mat4;
 use wgpu::util::DeviceExt;
 
-/// How a mesh lies in its buffers; offsets and strides in bytes.
+/// Layout of a mesh in its buffers; offsets and strides in bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Layout {
     pub vertex_stride: u64,
     pub position_offset: u64,
-    /// None: three vertices a triangle.
+    /// `None`: three vertices per triangle.
     pub indices: Option<wgpu::IndexFormat>,
-    /// Indices before the first.
+    /// Number of indices before the mesh's first.
     pub first_index: u64,
     pub transform_stride: u64,
     pub transform_offset: u64,
@@ -32,7 +32,7 @@ impl Layout {
     };
 }
 
-/// One mesh in buffers of its own. What lies between the values is NaN, so that a wrong address is seen.
+/// One mesh in buffers of its own. Gaps between values are NaN, so that a test detects a wrong address.
 pub struct Host {
     pub vertices: wgpu::Buffer,
     pub bounds: Aabb,
@@ -110,7 +110,7 @@ fn spread(values: impl Iterator<Item = Vec<f32>>, offset: u64, stride: u64) -> w
     )
 }
 
-/// Indices after `first` wrong ones.
+/// A buffer with `first` wrong indices, then those of `source`.
 fn indices(source: &[u32], format: wgpu::IndexFormat, first: u64) -> wgpu::Buffer {
     let padded = std::iter::repeat_n(1u32, first as usize).chain(source.iter().copied());
     let mut bytes: Vec<u8> = match format {

@@ -2,7 +2,7 @@
 //! texels of maps from many points meet an edge at many places of it, which leaves little of the raster in the sum.
 
 use crate::common::{builtin, camera, compared, cuboid, ground, light, scene, technique, truth};
-use crate::{SIZE, fresh, hovering, picture, seen, stat};
+use crate::{SIZE, fresh, hovering, seen, stat, visibility};
 use antumbra_metrics::Metrics;
 use antumbra_reference::Reference;
 use antumbra_scene::Scene;
@@ -76,7 +76,7 @@ fn a_refined_light_is_about_as_good_as_one_with_128_maps() {
         let (renderer, truth) = (seen(&scene), truth(&scene, SIZE, truth_samples));
         let uniform = compared(&fresh(&renderer, "uniform-sampling:map=256,samples=128"), &truth).average_error;
         let mut adaptive = technique("adaptive-sampling:map=256");
-        let error = compared(&picture(&renderer, &mut adaptive), &truth).average_error;
+        let error = compared(&visibility(&renderer, &mut adaptive), &truth).average_error;
         let maps = stat(&adaptive, "maps");
         println!("{spec}: error {error:.4} by {maps} maps, {uniform:.4} by 128 of fixed places");
         assert!(error < uniform + 0.01, "{spec}: error {error} by {maps} maps, {uniform} by 128 of fixed places");
@@ -87,7 +87,7 @@ fn a_refined_light_is_about_as_good_as_one_with_128_maps() {
 fn refined(size: Vec2, settings: &str) -> (Metrics, u32) {
     let scene = hovering(size);
     let mut adaptive = technique(&format!("adaptive-sampling:map=256{settings}"));
-    let found = picture(&seen(&scene), &mut adaptive);
+    let found = visibility(&seen(&scene), &mut adaptive);
     (compared(&found, &truth(&scene, SIZE, 1024)), stat(&adaptive, "maps"))
 }
 
@@ -111,7 +111,7 @@ fn a_point_takes_one_map() {
     let (renderer, truth) = (seen(&scene), truth(&scene, SIZE, 4));
     for settings in ["", ",filter=pcf", ",criterion=relative,filter=pcf"] {
         let mut adaptive = technique(&format!("adaptive-sampling:map=512{settings}"));
-        let found = picture(&renderer, &mut adaptive);
+        let found = visibility(&renderer, &mut adaptive);
         assert_eq!(stat(&adaptive, "maps"), 1, "{settings}");
         // A pixel whose middle is within a texel of the shadow's edge may be wrong.
         let wrong = found.iter().zip(&truth.visibility).filter(|(a, b)| (*a - *b).abs() > 0.01).count();

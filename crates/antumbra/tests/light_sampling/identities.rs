@@ -1,4 +1,4 @@
-//! The same picture by two ways, bit for bit.
+//! Settings and techniques that must give the same image, bit for bit.
 
 use crate::common::builtin;
 use crate::{assert_same, fresh, has_penumbra, hovering, largest_difference, seen};

@@ -1,5 +1,5 @@
-//! Sampling of the light by many shadow maps, fixed in number or refined: what must be the same by two ways, how far
-//! from the truth it is, and where and when maps are spent.
+//! Light sampling by many shadow maps, in a fixed number or refined: images that must be equal, errors against the
+//! truth, and the choice of maps.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -16,32 +16,32 @@ use common::{drawn, gpu, shadowed, technique};
 use glam::Vec2;
 use pollster::block_on;
 
-/// Pixels of a small picture.
+/// Size of the images, pixels.
 const SIZE: [u32; 2] = [96, 72];
 
-/// A scene with its surfaces drawn in a small picture.
+/// A renderer with the geometry buffer of a scene.
 fn seen(scene: &Scene) -> SceneRenderer {
     drawn(scene, SIZE)
 }
 
-/// A picture by a technique that may have been used before.
-fn picture(renderer: &SceneRenderer, shadows: &mut Shadows) -> Vec<f32> {
+/// Visibility by a technique that may have resources of earlier frames.
+fn visibility(renderer: &SceneRenderer, shadows: &mut Shadows) -> Vec<f32> {
     shadowed(renderer, shadows).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// A picture by a new instance.
+/// Visibility by a new instance of a technique.
 fn fresh(renderer: &SceneRenderer, spec: &str) -> Vec<f32> {
     shadowed(renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{spec}: {e}"))
 }
 
-/// A figure of the last frame.
+/// A count of the last frame.
 fn stat(shadows: &Shadows, name: &str) -> u32 {
-    let figures = block_on(shadows.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
-    let found = figures.iter().find(|(n, _)| *n == name);
-    found.unwrap_or_else(|| panic!("no `{name}` among {figures:?}")).1 as u32
+    let stats = block_on(shadows.stats(gpu())).unwrap_or_else(|e| panic!("{e}"));
+    let found = stats.iter().find(|(n, _)| *n == name);
+    found.unwrap_or_else(|| panic!("no `{name}` among {stats:?}")).1 as u32
 }
 
-/// Panics where two pictures differ by a bit.
+/// Panics if two images are not equal bit for bit.
 fn assert_same(a: &[f32], b: &[f32], what: &str) {
     assert_eq!(a.len(), b.len());
     let places: Vec<usize> = (0..a.len()).filter(|i| a[*i].to_bits() != b[*i].to_bits()).collect();
@@ -50,19 +50,18 @@ fn assert_same(a: &[f32], b: &[f32], what: &str) {
     }
 }
 
-/// The largest difference of two pictures.
+/// The largest difference of two images.
 fn largest_difference(a: &[f32], b: &[f32]) -> f32 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
 }
 
-/// True if a good part of a picture is penumbra and another is lit: one that is all lit would pass many a test.
-fn has_penumbra(picture: &[f32]) -> bool {
-    let percent =
-        |low: f32, high: f32| picture.iter().filter(|v| (low..=high).contains(v)).count() * 100 / picture.len();
+/// True if part of an image is penumbra and part is lit: many tests would pass if all of it were lit.
+fn has_penumbra(image: &[f32]) -> bool {
+    let percent = |low: f32, high: f32| image.iter().filter(|v| (low..=high).contains(v)).count() * 100 / image.len();
     percent(0.05, 0.95) >= 2 && percent(0.99, 1.0) >= 10
 }
 
-/// A box over the ground, under a light of `size` metres that shines aslant.
+/// A box over the ground, under a tilted light of `size` metres.
 fn hovering(size: Vec2) -> Scene {
     let meshes = vec![common::ground(20.0), common::cuboid([-0.5, 0.7, -0.3], [0.4, 1.0, 0.35])];
     let camera = common::camera([1.5, 1.7, 2.6], [0.1, 0.3, 0.1], 42.0);

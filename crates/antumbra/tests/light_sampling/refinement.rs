@@ -1,7 +1,7 @@
 //! Where maps are spent: within the budget, at thin casters too, and by what the camera or the light sees.
 
 use crate::common::{camera, compared, cuboid, drawn, gpu, ground, light, scene, submit, technique, truth};
-use crate::{SIZE, hovering, picture, seen, stat};
+use crate::{SIZE, hovering, seen, stat, visibility};
 use antumbra::View;
 use antumbra::scene::SceneRenderer;
 use antumbra_metrics::Metrics;
@@ -15,7 +15,7 @@ fn a_budget_of_maps_is_kept_and_spent_once() {
         let (renderer, truth) = (seen(&scene), truth(&scene, SIZE, 1024));
         for budget in [4, 5, 8, 20, 63] {
             let mut adaptive = technique(&format!("adaptive-sampling:tolerance=0,map=128,maps={budget}"));
-            let found = picture(&renderer, &mut adaptive);
+            let found = visibility(&renderer, &mut adaptive);
             let (maps, drawn) = (stat(&adaptive, "maps"), stat(&adaptive, "maps drawn"));
             let error = compared(&found, &truth).average_error;
             println!("light of {size} m: {maps} maps of {budget}, {drawn} drawn, error {error:.4}");
@@ -33,7 +33,7 @@ fn a_budget_of_maps_is_kept_and_spent_once() {
 /// Metrics and number of maps.
 fn spent(renderer: &SceneRenderer, truth: &Reference, settings: &str) -> (Metrics, u32) {
     let mut adaptive = technique(&format!("adaptive-sampling:map=256,{settings}"));
-    let found = picture(renderer, &mut adaptive);
+    let found = visibility(renderer, &mut adaptive);
     (compared(&found, truth), stat(&adaptive, "maps"))
 }
 
@@ -90,7 +90,7 @@ fn far_away_shadows_take_fewer_maps_unless_the_light_s_view_decides() {
             renderer.frame.update(View::of_camera(&eye, SIZE), light, frustum);
             submit(|encoder| renderer.record_geometry(gpu(), encoder, None)).unwrap_or_else(|e| panic!("{e}"));
             let mut adaptive = technique(&format!("adaptive-sampling:{settings}"));
-            picture(&renderer, &mut adaptive);
+            visibility(&renderer, &mut adaptive);
             stat(&adaptive, "maps")
         })
     };

@@ -1,7 +1,7 @@
 //! What may be kept from frame to frame while casters rest.
 
 use crate::common::{camera, cuboid, gpu, submit, technique};
-use crate::{SIZE, assert_same, fresh, hovering, picture, seen, stat};
+use crate::{SIZE, assert_same, fresh, hovering, seen, stat, visibility};
 use antumbra::View;
 use antumbra::scene::{SceneRenderer, upload};
 use antumbra_scene::Camera;
@@ -39,7 +39,7 @@ fn maps_of_resting_casters_are_drawn_once() {
         let mut renderer = resting();
         let mut kept = technique(&spec);
         let mut frame = |renderer: &SceneRenderer, what: &str| {
-            let found = picture(renderer, &mut kept);
+            let found = visibility(renderer, &mut kept);
             assert_same(&found, &fresh(renderer, &spec), &format!("{settings}: {what}, a used instance and a new one"));
             let (maps, drawn) = (stat(&kept, "maps"), stat(&kept, "maps drawn"));
             println!("{settings}: {what}: {maps} maps, {drawn} drawn");
@@ -74,7 +74,7 @@ fn fixed_samples_of_resting_casters_are_drawn_once() {
         let mut renderer = resting();
         let mut kept = technique(&spec);
         let mut frame = |renderer: &SceneRenderer, what: &str| {
-            let found = picture(renderer, &mut kept);
+            let found = visibility(renderer, &mut kept);
             let is_drawn = stat(&kept, "maps drawn") > 0;
             assert_same(&found, &fresh(renderer, &spec), &format!("{way}: {what}, a used instance and a new one"));
             is_drawn
@@ -104,16 +104,16 @@ fn a_used_instance_follows_the_light_s_shape_and_other_casters() {
         for other in [size, Vec2::new(0.9, 0.0), Vec2::new(0.0, 0.7), Vec2::ZERO, size, Vec2::new(0.7, 0.9)] {
             renderer.frame.light.size = other;
             change(&mut renderer, &near(), Vec3::ZERO);
-            let (by_kept, by_new) = (picture(&renderer, &mut kept), fresh(&renderer, spec));
+            let (by_kept, by_new) = (visibility(&renderer, &mut kept), fresh(&renderer, spec));
             assert_same(&by_kept, &by_new, &format!("{spec}, a light of {other} m"));
         }
         // As many triangles, at another place.
         let mut moved = hovering(size);
         moved.meshes[1] = cuboid([-0.3, 0.9, -0.3], [0.6, 1.2, 0.35]);
-        let before = picture(&renderer, &mut kept);
+        let before = visibility(&renderer, &mut kept);
         renderer.frame.casters = Arc::new(upload(gpu(), &moved).unwrap_or_else(|e| panic!("{e}")));
         change(&mut renderer, &near(), Vec3::ZERO);
-        let after = picture(&renderer, &mut kept);
+        let after = visibility(&renderer, &mut kept);
         assert!(after != before, "{spec}: the moved box casts the same shadow");
         assert_same(&after, &fresh(&renderer, spec), &format!("{spec}, other casters"));
     }

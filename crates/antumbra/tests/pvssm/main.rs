@@ -1,5 +1,5 @@
-//! Predicted virtual soft shadow maps against the truth: accuracy, any distance of the camera, memory, and fewer texels
-//! for softer shadows.
+//! Predicted virtual soft shadow maps against the truth: accuracy at all distances of the camera, memory, and
+//! fewer texels for softer shadows.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -20,28 +20,28 @@ fn stat(shadows: &Shadows, name: &str) -> f64 {
     stats.iter().find(|(n, _)| *n == name).unwrap_or_else(|| panic!("no count of {name}")).1
 }
 
-/// The truth over whole pixels: the technique filters over them.
+/// The truth averaged over pixels, because the technique filters over them.
 fn truth(scene: &Scene, light_samples: u32) -> Reference {
     let settings = Settings { light_samples, pixel_samples: 16, ..Settings::of_size(SIZE[0], SIZE[1]) };
     trace(scene, &settings, &|_| (), &AtomicBool::new(false)).unwrap_or_else(|e| panic!("{}: {e}", scene.name))
 }
 
-/// The errors of techniques against the truth, in their order.
-fn judged(scene: &Scene, specs: &[&str], light_samples: u32) -> Vec<Metrics> {
+/// The metrics of techniques against the truth, in their order.
+fn metrics_of(scene: &Scene, specs: &[&str], light_samples: u32) -> Vec<Metrics> {
     let (renderer, truth) = (drawn(scene, SIZE), truth(scene, light_samples));
-    let judge = |spec: &&str| {
+    let metrics = |spec: &&str| {
         let visibility =
             shadowed(&renderer, &mut technique(spec)).unwrap_or_else(|e| panic!("{}, {spec}: {e}", scene.name));
         compared(&visibility, &truth)
     };
-    specs.iter().map(judge).collect()
+    specs.iter().map(metrics).collect()
 }
 
 #[test]
 fn errors_are_those_of_one_fine_map() {
-    // Penumbrae of few pixels: here the perceptual function allows for more than in larger images.
+    // Penumbrae are few pixels wide, so that the perceptual function permits larger errors than in larger images.
     for (name, bound) in [("fence", 0.022), ("layers", 0.06), ("plant", 0.05)] {
-        let found = judged(&builtin(name), &["pvssm", "smooth-pcss:map=4096"], 256);
+        let found = metrics_of(&builtin(name), &["pvssm", "smooth-pcss:map=4096"], 256);
         let [ours, fine] = [found[0].average_error, found[1].average_error];
         println!("{name}: {ours:.4}, one map of 4096 texels {fine:.4}, acne {:.5}", found[0].acne);
         assert!(ours < bound && ours < 1.1 * fine + 0.003, "{name}: {ours} (one fine map: {fine})");
@@ -62,7 +62,7 @@ fn hard_shadows_are_those_of_the_point_at_the_lights_centre() {
         let of_hard = compared(&hard, &point).average_error;
         println!("{name}: {error:.4}, one map of 2048 texels {of_hard:.4}");
         assert!(error < of_hard, "{name}: {error} (hard: {of_hard})");
-        // A light with a size makes no difference.
+        // `fvsm` ignores the light's size.
         scene.light.size = soft;
         let wide = shadowed(&drawn(&scene, SIZE), &mut technique("fvsm")).unwrap_or_else(|e| panic!("{e}"));
         let far = wide.iter().zip(&by_point).filter(|(a, b)| (**a - **b).abs() > 0.5).count();
@@ -71,7 +71,7 @@ fn hard_shadows_are_those_of_the_point_at_the_lights_centre() {
 }
 
 #[test]
-fn no_discretisation_shows_from_a_hand_s_breadth_to_a_hundred_metres() {
+fn no_discretisation_shows_from_ten_centimetres_to_a_hundred_metres() {
     let mut scene = builtin("fence");
     // Where the shadow of a slat begins and the penumbra opens.
     let target = Vec3::new(0.4, 0.0, 0.3);
@@ -102,7 +102,7 @@ fn no_discretisation_shows_from_a_hand_s_breadth_to_a_hundred_metres() {
     }
     println!("worst FLIP {:.4} at {} m, of discretisation {:.4} at {} m", worst.0, worst.1, coarse.0, coarse.1);
     assert!(worst.0 < 0.09, "FLIP {} at {} m", worst.0, worst.1);
-    assert!(coarse.0 < 0.04, "discretisation shows by a FLIP of {} at {} m", coarse.0, coarse.1);
+    assert!(coarse.0 < 0.04, "the discretisation has a FLIP of {} at {} m", coarse.0, coarse.1);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Soft shadow maps [Atty 2006] against closed forms, against the truth, and where they could break.
+//! Soft shadow maps [Atty 2006] against closed forms, against the truth, and in extreme cases.
 
 #[path = "../common/mod.rs"]
 mod common;
@@ -10,16 +10,16 @@ mod square;
 
 use antumbra_scene::Scene;
 
-/// Pixels of most pictures here.
+/// Size of most images, pixels.
 const SIZE: [u32; 2] = [96, 72];
 
-/// The visibility of a scene, every pixel of which was found in [0, 1].
+/// The visibility of a scene; panics if a pixel is outside of [0, 1].
 fn in_range(scene: &Scene, spec: &str) -> Vec<f32> {
-    let picture = common::visibility(scene, spec, SIZE);
-    for (i, v) in picture.iter().enumerate() {
+    let visibility = common::visibility(scene, spec, SIZE);
+    for (i, v) in visibility.iter().enumerate() {
         assert!((0.0..=1.0).contains(v), "{spec}: pixel ({}, {}) is {v}", i as u32 % SIZE[0], i as u32 / SIZE[0]);
     }
-    picture
+    visibility
 }
 
 /// The mean and the largest absolute difference.

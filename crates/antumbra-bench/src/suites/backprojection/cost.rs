@@ -1,6 +1,6 @@
 //! Milliseconds over the parameters that they depend on.
 
-use super::lights::{LIGHT_AXIS, Lit, by_light};
+use super::lights::{LIGHT_AXIS, LightTrial, by_light};
 use super::specs::{BALANCED, PCSS, run_of};
 use crate::kit::{Content, Run, Section, Trial, with_map};
 use crate::page::lines::{Curve, Lines, Point};
@@ -14,12 +14,12 @@ pub const MAPS: [u32; 4] = [256, 512, 1024, 2048];
 /// Trials of the four curves.
 pub struct Costs<'a> {
     /// One sweep per scene.
-    pub lights: &'a [(&'a str, Vec<Lit<'a>>)],
-    /// Every size of map in one trial.
+    pub lights: &'a [(&'a str, Vec<LightTrial<'a>>)],
+    /// A trial with every size of map.
     pub maps: &'a Trial,
     /// The same scene in several sizes.
     pub images: &'a [Trial],
-    /// Scenes of more and more triangles.
+    /// Scenes with increasing numbers of triangles.
     pub triangles: &'a [Trial],
 }
 
@@ -30,8 +30,8 @@ pub fn section(costs: &Costs) -> Section {
         MAPS.iter().filter_map(run).collect()
     };
     let text = format!(
-        "Over the size of the light, as above; of the map, {}, {}; over the pixels of the image, {}; over the triangles \
-         of a forest, {}. The presets are unchanged except for the axis.",
+        "Milliseconds over the size of the light (as above), over the size of the map ({}, {}), over the pixels of the \
+         image ({}) and over the triangles of a forest ({}). Only the parameter of the axis changes.",
         costs.maps.scene,
         costs.maps.pixels(),
         costs.images.first().map_or("", |trial| &trial.scene),
@@ -42,7 +42,7 @@ pub fn section(costs: &Costs) -> Section {
         "Milliseconds",
         text,
         vec![
-            plot(LIGHT_AXIS, by_light(costs.lights, of_ms, spoken), &[]),
+            plot(LIGHT_AXIS, by_light(costs.lights, total_ms, with_unit), &[]),
             plot("texels per side of the map", curves(maps), &[("x²", 2.0)]),
             plot("pixels", curves(|spec| over(costs.images, spec, Trial::pixel_count)), &[("x", 1.0)]),
             plot("triangles", curves(|spec| over(costs.triangles, spec, triangles)), &[]),
@@ -50,11 +50,11 @@ pub fn section(costs: &Costs) -> Section {
     )
 }
 
-fn of_ms(run: &Run) -> f64 {
+fn total_ms(run: &Run) -> f64 {
     run.cost.total_ms
 }
 
-fn spoken(ms: f64) -> String {
+fn with_unit(ms: f64) -> String {
     format!("{} ms", text::ms(ms))
 }
 
@@ -63,7 +63,7 @@ fn over<'a>(trials: &'a [Trial], spec: &str, x: impl Fn(&Trial) -> f64) -> Vec<(
 }
 
 fn plot(x: &str, curves: Vec<Curve>, guides: &[(&'static str, f64)]) -> Content {
-    Lines::new(x, "GPU milliseconds a frame", curves).guides(guides).into()
+    Lines::new(x, "GPU milliseconds per frame", curves).guides(guides).into()
 }
 
 fn curves<'a>(runs: impl Fn(&str) -> Vec<(f64, &'a Run)>) -> Vec<Curve> {
@@ -71,8 +71,8 @@ fn curves<'a>(runs: impl Fn(&str) -> Vec<(f64, &'a Run)>) -> Vec<Curve> {
     let colors = [1, 3];
     let curve = |((label, spec), color): (&(&str, &str), usize)| {
         let point = |(x, run): (f64, &Run)| {
-            let y = of_ms(run);
-            Point::new(x, y, format!("{}: {} at {}", run.spec, spoken(y), text::count(x as u64)))
+            let y = total_ms(run);
+            Point::new(x, y, format!("{}: {} at {}", run.spec, with_unit(y), text::count(x as u64)))
         };
         Curve::new(*label, color, runs(spec).into_iter().map(point))
     };
@@ -85,7 +85,7 @@ mod tests {
     use crate::kit::made_up::{run, trial};
 
     #[test]
-    fn each_curve_has_a_point_a_measurement() {
+    fn each_curve_has_a_point_per_measurement() {
         let both = |name: &str| trial(name, DRAWN.iter().map(|(_, spec)| run(spec, 5.0, &[])).collect());
         let of_maps = DRAWN.iter().flat_map(|(_, spec)| MAPS.map(|map| run(&with_map(spec, map), 5.0, &[])));
         let (maps, images) = (trial("maps", of_maps.collect()), [both("a"), both("b")]);

@@ -42,7 +42,7 @@ pub fn settings(scenes: &[Trial]) -> Section {
         "Setting by setting",
         "The same scenes. Along a line one setting of the balanced preset takes the values of the legend in their order, \
          and all others stay; the lines meet at the preset.",
-        vec![Lines::new("GPU milliseconds a frame", "average error", curves).less_is_better().into()],
+        vec![Lines::new("GPU milliseconds per frame", "average error", curves).less_is_better().into()],
     )
 }
 

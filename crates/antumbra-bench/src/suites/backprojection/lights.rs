@@ -6,22 +6,22 @@ use crate::page::lines::{Curve, Lines, Point};
 use crate::page::text;
 use crate::table::{Table, column};
 
-/// A size of the light over the distance of the occluder, and the trial.
-pub type Lit<'a> = (f64, &'a Trial);
+/// A trial with its size of the light, as a multiple of the distance between light and occluder.
+pub type LightTrial<'a> = (f64, &'a Trial);
 
 /// Title of the axis.
 pub const LIGHT_AXIS: &str = "size of the light ÷ distance of the occluder from it";
 
 /// Plots and a table of the error as the light grows; one sweep per scene.
-pub fn section(sweeps: &[(&str, Vec<Lit>)]) -> Section {
+pub fn section(sweeps: &[(&str, Vec<LightTrial>)]) -> Section {
     let plot = |y: &str, value: fn(&Run) -> f64| -> Content {
         Lines::new(LIGHT_AXIS, y, by_light(sweeps, value, text::metric)).into()
     };
     Section::new(
         "Error over the size of the light",
         "The light's edge grows from 0.05 to 3 times the occluder's distance from it: the square hangs 2 m below its \
-         light; in other scenes the distance is that to the centre of the casters. Half the size of the other images \
-         each way.",
+         light; in other scenes the distance is that to the centre of the casters. Images have half the size of the \
+         others per side.",
         vec![
             plot("average error", |run| run.metrics.average_error),
             plot("largest error of a pixel", |run| run.metrics.max),
@@ -31,12 +31,12 @@ pub fn section(sweeps: &[(&str, Vec<Lit>)]) -> Section {
 }
 
 /// One curve per scene and technique, over the size of the light.
-pub fn by_light(sweeps: &[(&str, Vec<Lit>)], value: fn(&Run) -> f64, spoken: fn(f64) -> String) -> Vec<Curve> {
+pub fn by_light(sweeps: &[(&str, Vec<LightTrial>)], value: fn(&Run) -> f64, text: fn(f64) -> String) -> Vec<Curve> {
     let curves = sweeps.iter().enumerate().flat_map(|(i, (scene, lit))| {
         COMPARED.iter().enumerate().map(move |(color, (name, spec))| {
-            let point = |(x, trial): &Lit| {
+            let point = |(x, trial): &LightTrial| {
                 let y = value(run_of(trial, spec)?);
-                Some(Point::new(*x, y, format!("{spec}, {scene}, {x} times the distance: {}", spoken(y))))
+                Some(Point::new(*x, y, format!("{spec}, {scene}, {x} times the distance: {}", text(y))))
             };
             Curve::new(format!("{name}, {scene}"), color, lit.iter().filter_map(point)).dashed(i > 0)
         })
@@ -51,8 +51,8 @@ struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
-    /// None unless every trial has the technique.
-    fn of(lit: &[Lit<'a>], spec: &'static str) -> Option<Row<'a>> {
+    /// `None` unless every trial has the technique.
+    fn of(lit: &[LightTrial<'a>], spec: &'static str) -> Option<Row<'a>> {
         let runs: Option<Vec<_>> = lit.iter().map(|(x, trial)| Some((*x, run_of(trial, spec)?))).collect();
         runs.filter(|runs| !runs.is_empty()).map(|runs| Row { spec, runs })
     }
@@ -64,8 +64,8 @@ impl<'a> Row<'a> {
     }
 }
 
-fn table(sweeps: &[(&str, Vec<Lit>)]) -> Table {
-    const AT: &str = "Size of the light there, in distances of the occluder";
+fn table(sweeps: &[(&str, Vec<LightTrial>)]) -> Table {
+    const AT: &str = "Size of the light at which this occurs, over the distance of the occluder";
     let average = |run: &Run| run.metrics.average_error;
     let pixel = |run: &Run| run.metrics.max;
     let columns = [
@@ -73,13 +73,15 @@ fn table(sweeps: &[(&str, Vec<Lit>)]) -> Table {
         column("mean error", "Mean over the sizes of the light of the average error", "", move |row: &Row| {
             text::metric(row.runs.iter().map(|(_, run)| average(run)).sum::<f64>() / row.runs.len() as f64)
         }),
-        column("largest", "Largest average error of a size", "", move |row: &Row| text::metric(row.largest(average).0)),
+        column("largest", "Largest average error at any size", "", move |row: &Row| {
+            text::metric(row.largest(average).0)
+        }),
         column("at", AT, "", move |row: &Row| row.largest(average).1.to_string()),
         column("largest of a pixel", "Largest |error| of any pixel at any size", "", move |row: &Row| {
             text::metric(row.largest(pixel).0)
         }),
         column("at", AT, "", move |row: &Row| row.largest(pixel).1.to_string()),
-        column("p99", "Largest 99th percentile of |error| of a size", "", |row: &Row| {
+        column("p99", "Largest 99th percentile of |error| at any size", "", |row: &Row| {
             text::metric(row.largest(|run| run.metrics.p99).0)
         }),
     ];
@@ -95,7 +97,7 @@ mod tests {
     use crate::kit::made_up::{run, trial};
 
     #[test]
-    fn the_largest_error_of_a_sweep_is_told_with_the_light_that_it_was_found_at() {
+    fn the_table_has_the_largest_error_of_a_sweep_and_its_size_of_the_light() {
         let all = |ms| trial("a", COMPARED.iter().map(|(_, spec)| run(spec, ms, &[])).collect());
         let mut trials = [all(1.0), all(2.0)];
         trials[1].runs[0].metrics.average_error = 0.75;

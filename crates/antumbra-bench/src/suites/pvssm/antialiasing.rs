@@ -17,10 +17,10 @@ const PLAIN: &str = "pcss";
 /// Samples per side of the reference.
 const REFERENCE: u32 = 32;
 
-/// A SPEC, its samples per pixel a side, and its result.
+/// A SPEC, its samples per side of a pixel, and its result.
 struct Row {
     spec: String,
-    times: u32,
+    samples_per_side: u32,
     rmse: f64,
     ms: f64,
 }
@@ -60,7 +60,7 @@ pub fn measure(runner: &Runner) -> Result<Antialiased, Error> {
     let plain = format!("{PLAIN}:map={MAP}");
     let truth = draw(runner, &scene, &plain, REFERENCE)?;
     let mut rows = Vec::new();
-    for (spec, times) in [
+    for (spec, samples_per_side) in [
         (format!("smooth-pcss:map={MAP}"), 1),
         ("fvsm".to_owned(), 1),
         (plain.clone(), 1),
@@ -68,37 +68,41 @@ pub fn measure(runner: &Runner) -> Result<Antialiased, Error> {
         (plain, REFERENCE),
     ] {
         runner.monitor.check()?;
-        let (values, ms) = if times == REFERENCE { truth.clone() } else { draw(runner, &scene, &spec, times)? };
+        let (values, ms) =
+            if samples_per_side == REFERENCE { truth.clone() } else { draw(runner, &scene, &spec, samples_per_side)? };
         let squares: f64 = values.iter().zip(&truth.0).map(|(a, b)| f64::from(a - b).powi(2)).sum();
-        rows.push(Row { spec, times, rmse: (squares / values.len() as f64).sqrt(), ms });
+        rows.push(Row { spec, samples_per_side, rmse: (squares / values.len() as f64).sqrt(), ms });
     }
     Ok(Antialiased { rows })
 }
 
-/// The visibility at `times` samples per side, averaged, and the milliseconds of the shadow.
-fn draw(runner: &Runner, scene: &Scene, spec: &str, times: u32) -> Result<(Vec<f32>, f64), Error> {
-    let side = SIDE * times;
+/// The mean visibility of each pixel at this number of samples per side, and the milliseconds of the shadow.
+fn draw(runner: &Runner, scene: &Scene, spec: &str, samples_per_side: u32) -> Result<(Vec<f32>, f64), Error> {
+    let side = SIDE * samples_per_side;
     let loaded = runner.load(scene, [side; 2])?;
-    let frames = if times == REFERENCE { 1 } else { runner.frames };
+    let frames = if samples_per_side == REFERENCE { 1 } else { runner.frames };
     let rendered = loaded.render(&spec.parse()?, frames, |_| ())?;
     let mut averages = vec![0.0; (SIDE * SIDE) as usize];
     for (i, value) in rendered.visibility.iter().enumerate() {
-        let (x, y) = (i as u32 % side / times, i as u32 / side / times);
-        averages[(y * SIDE + x) as usize] += value / (times * times) as f32;
+        let (x, y) = (i as u32 % side / samples_per_side, i as u32 / side / samples_per_side);
+        averages[(y * SIDE + x) as usize] += value / samples_per_side.pow(2) as f32;
     }
     Ok((averages, rendered.cost.comparable_ms(runner.gpu)))
 }
 
 impl Antialiased {
-    fn row(&self, spec: &str, times: u32) -> &Row {
-        self.rows.iter().find(|r| r.spec.starts_with(spec) && r.times == times).expect("all rows are measured")
+    fn row(&self, spec: &str, samples_per_side: u32) -> &Row {
+        self.rows
+            .iter()
+            .find(|r| r.spec.starts_with(spec) && r.samples_per_side == samples_per_side)
+            .expect("all rows are measured")
     }
 
     pub fn section(&self) -> Section {
         let eight = self.row(PLAIN, 8).ms;
         let columns = [
             column("technique", "Name and settings", "", |row: &&Row| row.spec.clone()),
-            column("samples", "Samples per pixel", "", |row: &&Row| format!("{0} x {0}", row.times)),
+            column("samples", "Samples per pixel", "", |row: &&Row| format!("{0} x {0}", row.samples_per_side)),
             column("RMSE", "Against 32 x 32 samples", "", |row: &&Row| text::metric(row.rmse)),
             column("ms", "GPU time of the shadow", "ms", |row: &&Row| text::ms(row.ms)),
             column("speed", "Over 8 x 8 samples", "", move |row: &&Row| text::ratio(eight / row.ms)),
@@ -106,7 +110,8 @@ impl Antialiased {
         let title = format!("grid, a small light, {SIDE} x {SIDE} pixels");
         let text = format!(
             "A grid over a floor that extends to the horizon, a map of {MAP} texels; the reference is the same map at \
-             32 x 32 samples per pixel, {} ms. The paper: 280 frames a second where 8 x 8 samples have 30 and look worse.",
+             32 x 32 samples per pixel, {} ms. The paper reports 280 frames per second, and 30 for 8 x 8 samples, \
+             which look worse.",
             text::ms(self.row(PLAIN, REFERENCE).ms)
         );
         let table = Table::new(&columns, title, &self.rows);
@@ -138,7 +143,12 @@ impl Antialiased {
 
     #[cfg(test)]
     pub fn made_up() -> Antialiased {
-        let row = |(spec, times): (&str, u32)| Row { spec: spec.into(), times, rmse: 0.01, ms: f64::from(times) };
+        let row = |(spec, samples_per_side): (&str, u32)| Row {
+            spec: spec.into(),
+            samples_per_side,
+            rmse: 0.01,
+            ms: f64::from(samples_per_side),
+        };
         Antialiased {
             rows: [("smooth-pcss", 1), ("fvsm", 1), (PLAIN, 1), (PLAIN, 8), (PLAIN, REFERENCE)].map(row).into(),
         }

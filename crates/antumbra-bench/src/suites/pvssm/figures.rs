@@ -51,11 +51,11 @@ pub fn sections(trials: &[Trial]) -> Vec<Section> {
         (
             "Figure 8: the perceptual function",
             "The cubic polynomial of the kernel's size, a line that asks for as many texels, and a single map. The \
-             paper: 4.8, 4.7 and 11 frames a second, the line and the map being much worse to look at.",
+             paper: 4.8, 4.7 and 11 frames per second, the line and the map being much worse to look at.",
         ),
         (
             "Figure 10: hard and soft",
-            "One texel per pixel for hard shadows, fewer for soft ones. The paper: 15 and 27 frames a second.",
+            "One texel per pixel for hard shadows, fewer for soft ones. The paper: 15 and 27 frames per second.",
         ),
     ];
     let section = |(trial, (title, text)): (&Trial, (&str, &str))| {

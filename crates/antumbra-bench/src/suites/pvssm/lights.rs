@@ -1,4 +1,4 @@
-//! Table 2: frames a second and memory under a small and under a large light; figure 13.
+//! Table 2: frames per second and memory under a small and under a large light; figure 13.
 
 use super::scale::Scale;
 use crate::Error;
@@ -41,7 +41,7 @@ fn specs(scale: Scale) -> [String; 6] {
     [
         adaptive(scale),
         format!("smooth-pcss:map={map}"),
-        // As many nodes as texels fit the window: the pyramid is not used.
+        // 128 nodes per side cover the window at the finest level, so that the pyramid is not used.
         format!("smooth-pcss:map={map},search=128,filter=128"),
         format!("cssm:map={map}"),
         format!("packet:map={map}"),
@@ -65,14 +65,14 @@ fn of_maps(run: &Run) -> u64 {
 }
 
 pub fn section(trials: &[Trial]) -> Section {
-    /// The last: the row of the paper, and which light.
+    /// Trial, run, the paper's row, and the index of the light.
     type Line<'a> = (&'a Trial, &'a Run, (&'static Row, usize));
     let fps = |row: &Row, light: usize| row.paper.map(|(fps, _)| fps[light]);
     let columns = [
         column("row", "The paper's row", "", |(_, _, (row, _)): &Line| row.name.to_owned()),
         columns::technique(),
         columns::ms(),
-        column("adaptive", "Speed of the adaptive way over this", "", |(trial, run, _): &Line| {
+        column("adaptive", "Speed of the adaptive maps over this", "", |(trial, run, _): &Line| {
             text::ratio(trial.runs[ADAPTIVE].speed_over(run))
         }),
         column("paper", "The same in the paper", "", move |(_, _, (row, light)): &Line| {
@@ -125,9 +125,9 @@ pub fn lead(trials: &[Trial]) -> String {
     let adaptive = &large.runs[ADAPTIVE];
     let over = |row: usize| text::ratio(adaptive.speed_over(&large.runs[row]));
     format!(
-        "Under a large light the adaptive way is {} times as fast as a fixed map that is read texel by texel (paper: 3.0), \
-         {} times as fast as one with a pyramid, and {} times as fast as 64 hard maps (paper: 35), with {} MB of maps \
-         (paper: 68). ",
+        "Under a large light the adaptive maps are {} times as fast as a fixed map that is read texel by texel (paper: \
+         3.0), {} times as fast as one with a pyramid, and {} times as fast as 64 hard maps (paper: 35), with {} MB of \
+         maps (paper: 68). ",
         over(BRUTE),
         over(FIXED),
         over(AVERAGE),

@@ -40,7 +40,7 @@ fn plot(x: &str, trials: &[&Trial], at: fn(&Trial) -> f64) -> Content {
     let tiles = |t: &Trial| t.run(SPECS[0])?.cost.ms_of(|p| ["tiles", "tile culling"].contains(&p.name.as_str()));
     let tiles = |t: &Trial| tiles(t).filter(|ms| *ms > 0.0);
     let curves = whole.chain([curve("pvssm, its tiles alone", 0, &tiles).dashed(true)]);
-    Lines::new(x, "milliseconds a frame", curves).guides(&[("x", 1.0)]).into()
+    Lines::new(x, "milliseconds per frame", curves).guides(&[("x", 1.0)]).into()
 }
 
 pub fn section(trials: &[Trial]) -> Section {

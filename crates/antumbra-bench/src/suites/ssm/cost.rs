@@ -50,7 +50,7 @@ pub fn measure(runner: &Runner, occluder: &Occluder, found: &mut Measured) -> Re
     Ok(Costs { large_over_small, second_pass, over_cpu, levels_error, levels_speed })
 }
 
-const MS: &str = "milliseconds a frame";
+const MS: &str = "milliseconds per frame";
 
 fn ratio(stage: &Stage, what: &'static str, spec: &str, base: &str, paper: f64, ours: f64) -> Ratio {
     Ratio { what, trial: stage.scene.name.clone(), spec: spec.into(), base: base.into(), paper: Some(paper), ours }
@@ -84,7 +84,7 @@ fn triangles(runner: &Runner, occluder: &Occluder, found: &mut Measured) -> Resu
     found.sections.push(Section::new(
         "Triangles (figures 21 and 25)",
         format!(
-            "Copies of {} side by side, light of 0.1. The paper: linear in triangles, over 30 frames a second with \
+            "Copies of {} side by side, light of 0.1. The paper: linear in triangles, over 30 frames per second with \
              340 000 on a GeForce 6800 Ultra; two passes take 1.6 to 1.8 times as long as one. Its figure 25 compares \
              maps of 210 x 210 with soft shadow volumes, whose time grows faster with copies; here the dashed lines \
              show other techniques of this program.",

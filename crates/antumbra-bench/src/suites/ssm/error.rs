@@ -10,8 +10,7 @@ use crate::table::{Table, column};
 
 /// Texels per side of the paper's map.
 const PAPER_MAP: u32 = 128;
-/// Texels per side. Up to [`LARGEST_FLAT`] the map is the paper's flat one; larger ones have levels twice as fine as by
-/// default.
+/// Texels per side.
 const MAPS: [u32; 12] = [16, 32, 64, 96, 128, 160, 192, 224, 256, 384, 512, 1024];
 const LARGEST_FLAT: u32 = 256;
 const LIGHTS: [f32; 6] = [0.01, 0.02, 0.05, 0.1, 0.15, 0.2];
@@ -19,8 +18,9 @@ const OFFSETS: [f32; 6] = [0.01, 0.05, 0.1, 0.15, 0.2, 0.3];
 /// Fractions of the distance from touching the receiver to touching the light.
 const HEIGHTS: [f32; 7] = [0.001, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0];
 
-/// The paper's setting.
+/// The paper's flat map up to [`LARGEST_FLAT`] texels per side, levels above it.
 fn spec(map: u32, passes: u32) -> String {
+    // With `window=16` levels are twice as fine as by default.
     let levels = if map > LARGEST_FLAT { "window=16" } else { "hierarchy=false" };
     format!("ssm:map={map},passes={passes},{levels}")
 }
@@ -33,7 +33,7 @@ pub struct AtPaper {
     pub two: f64,
 }
 
-/// Samples of one pass and of two over a parameter.
+/// Samples with one pass and with two, over a parameter.
 type Sweep = Vec<(f64, [Sample; 2])>;
 
 /// The curves of an occluder.
@@ -87,9 +87,10 @@ fn sections(all: &[(&Occluder, Sweeps)]) -> Vec<Section> {
             "Size of the map (figure 17)",
             format!(
                 "Light of 0.1. Up to {LARGEST_FLAT} texels per side one flat map as in the paper, above it levels with \
-                 window=16, which agree with the flat map to about 0.001 (see the levels). The paper: falls until \
-                 about 200 x 200 and is flat above; spikes on the square, whose edges lie along the map's; two passes \
-                 consistently below one on closed meshes, the same on the square; axis of 0 to 0.08.",
+                 window=16, which agree with the flat map to about 0.001 (see the section on levels). In \
+                 the paper the error falls until about 200 x 200 texels and is constant above. It has spikes for the \
+                 square, whose edges are parallel to the map's. Two passes have a smaller error than one on closed \
+                 meshes and the same error on the square. The axis ends at 0.08.",
             ),
             "texels per side of the map",
             all,
@@ -97,8 +98,8 @@ fn sections(all: &[(&Occluder, Sweeps)]) -> Vec<Section> {
         ),
         section(
             "Size of the light (figure 18)",
-            "Map of 128 x 128. The paper: grows with the light, but for a point light, where the error is 1 along a \
-             boundary that is off by half a texel."
+            "Map of 128 x 128. In the paper the error grows with the light, except for a point light, where the error \
+             is 1 along a boundary that is off by half a texel."
                 .into(),
             "edge of the light; the scene is 1 wide, the occluder 0.2",
             all,
@@ -106,17 +107,17 @@ fn sections(all: &[(&Occluder, Sweeps)]) -> Vec<Section> {
         ),
         section(
             "Occluder moved sideways (figure 19)",
-            "Map of 128 x 128, light of 0.1. The paper: smallest under the light, growing sideways, a little \
-             different to the left (broken lines) and to the right on meshes that are not symmetric."
+            "Map of 128 x 128, light of 0.1. In the paper the error is smallest under the light and grows to \
+             both sides, with small differences between left (broken lines) and right on asymmetric meshes."
                 .into(),
-            "distance from under the light's centre",
+            "horizontal distance from the light's centre",
             all,
             |s| vec![("", &s.right), (", left", &s.left)],
         ),
         section(
             "Occluder moved from the receiver to the light (figure 20)",
-            "Map of 128 x 128, light of 0.1 at a height of 0.75; at 1 the occluder's top touches the light. The paper: \
-             grows as the occluder nears the light, much where part of it touches it; axis of 0 to 0.15."
+            "Map of 128 x 128, light of 0.1 at a height of 0.75; at 1 the occluder's top touches the light. In the \
+             paper the error grows towards the light, steeply where the occluder touches it. The axis ends at 0.15."
                 .into(),
             "height of the occluder, as a fraction of the distance between ground and light",
             all,
@@ -174,8 +175,8 @@ pub fn half_precision(runner: &Runner, occluder: &Occluder) -> Result<Section, E
     Ok(Section::new(
         "Sums in 16 bits (figure 14)",
         "Light of 0.1. A patch that hides less than 1/1024 of the light is lost when it is added to a larger sum; \
-         equation 4 says which. The paper: right with 128 x 128 texels, wrong with 512 x 512; it hopes for a hierarchy, \
-         whose patches are never that small.",
+         equation 4 is the condition. The paper's image is correct with 128 x 128 texels and wrong with 512 x 512; it \
+         proposes a hierarchy, whose patches are never that small.",
         vec![Table::new(&columns, &occluder.name, rows).into()],
     ))
 }

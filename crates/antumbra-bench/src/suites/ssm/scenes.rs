@@ -1,23 +1,24 @@
-//! The scenes of the curves: an occluder a fifth of the scene wide, between the ground and a light that faces it.
+//! The scenes of the curves: an occluder between the ground and a light that faces it. The unit of length is the width
+//! of the paper's scene.
 
 use crate::Error;
 use crate::suites::shapes::{instance, rectangle};
 use antumbra_scene::{Aabb, Camera, Instance, Material, Mesh, RectLight, Scene, builtin};
 use glam::{Affine3A, Vec2, Vec3};
 
-/// Height of the light; the scene is one unit wide, as in the paper's curves.
+/// Height of the light above the ground.
 pub const LIGHT_HEIGHT: f32 = 0.75;
-/// Widest extent of an occluder.
+/// Extent of an occluder along its longest axis.
 const OCCLUDER: f32 = 0.2;
-/// Bottom of the occluder where its height is not the parameter: meshes stand on the ground, the square hangs over it.
+/// Default height of a flat occluder above the ground; other occluders stand on it.
 const SQUARE_HEIGHT: f32 = 0.3;
 
-/// An occluder around the origin, its widest extent scaled to that of the paper's scenes.
+/// An occluder of any size; [`Occluder::scene`] scales it to `OCCLUDER`.
 #[derive(Clone)]
 pub struct Occluder {
     pub name: String,
     meshes: Vec<Mesh>,
-    /// Of its parts, in world space of the unscaled scene.
+    /// Instances of `meshes` in world space, not yet scaled.
     parts: Vec<Instance>,
     bounds: Aabb,
     pub is_flat: bool,
@@ -26,11 +27,11 @@ pub struct Occluder {
 /// Position of the occluder and size of the light.
 #[derive(Clone, Copy)]
 pub struct Placement {
-    /// Edge of the light.
+    /// Edge length of the light.
     pub light: f32,
-    /// Sideways offset from under the light's centre.
+    /// Offset along x from the point under the light's centre.
     pub offset: f32,
-    /// Lowest point over the ground; none for the usual one.
+    /// Height of the occluder's lowest point above the ground; `None` is the default height.
     pub bottom: Option<f32>,
 }
 
@@ -72,18 +73,18 @@ impl Occluder {
         OCCLUDER / self.bounds.size().max_element()
     }
 
-    /// Height of the occluder itself.
+    /// Vertical extent of the scaled occluder.
     pub fn height(&self) -> f32 {
         self.bounds.size().y * self.scale()
     }
 
-    /// One occluder under the light.
+    /// A scene with one occluder.
     pub fn scene(&self, place: Placement) -> Scene {
         let bottom = place.bottom.unwrap_or(if self.is_flat { SQUARE_HEIGHT } else { 0.0 });
         self.scene_of(&[Vec3::new(place.offset, bottom, 0.0)], place.light)
     }
 
-    /// Several copies side by side, in rows on the ground.
+    /// A scene with `count` copies of the occluder in rows on the ground.
     pub fn copies(&self, count: u32, light: f32) -> Scene {
         let side = (count as f32).sqrt().ceil() as u32;
         let place = |i: u32| {

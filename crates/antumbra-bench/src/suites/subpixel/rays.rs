@@ -1,4 +1,4 @@
-//! Figures 8, 9 and 11: beside rays through the same samples of every pixel.
+//! Figures 8, 9 and 11: `subpixel` beside rays through the same samples of every pixel.
 
 use super::table::{self, SIZE};
 use crate::Error;
@@ -34,7 +34,7 @@ struct Case {
     /// Mean difference over the pixels that are partly in shadow.
     over_partial: f64,
     stats: BTreeMap<&'static str, f64>,
-    /// The technique's, the rays', ten times the difference.
+    /// By the technique, by rays, and ten times their difference.
     images: [RgbImage; 3],
 }
 
@@ -46,7 +46,7 @@ pub struct Compared {
 
 /// Compares each scene, with and without the validity mask.
 pub fn compare(runner: &Runner) -> Result<Compared, Error> {
-    // Rays at every sample are slow: half of the image each way.
+    // Rays at every sample are slow, so the image has half the size per side.
     let size = runner.size(SIZE).map(|side| (side / 2).max(1));
     let mut cases = Vec::new();
     for (what, name) in SCENES {
@@ -67,7 +67,7 @@ pub fn compare(runner: &Runner) -> Result<Compared, Error> {
     Ok(Compared { cases, cage })
 }
 
-/// Rays through the samples of a SPEC of `subpixel`.
+/// Visibility by rays through the samples of a SPEC of `subpixel`.
 fn rays(scene: &Scene, size: [u32; 2], spec: &str) -> Result<Reference, Error> {
     let spec: Spec = spec.parse()?;
     let settings: SubpixelSettings = serde_json::from_value(spec.settings).expect("settings of `subpixel`");
@@ -125,7 +125,7 @@ impl Compared {
     pub fn lead(&self) -> String {
         let of = |scene: &str, spec: &str| self.cases.iter().find(|c| c.scene == scene && c.spec == spec);
         let (Some(plane), Some(bumpy)) = (of("fence", SPEC), of("bumpy", SPEC)) else { return String::new() };
-        let valid = bumpy.stats.get("valid samples half in shadow").copied().unwrap_or(f64::NAN);
+        let valid = bumpy.stats.get("valid samples partly in shadow").copied().unwrap_or(f64::NAN);
         format!(
             "Against rays through the same 32 samples the mean difference of visibility is {} over the silhouette pixels \
              of planar receivers; on the bumpy receiver {valid:.1} of 32 samples are valid (paper: 18.5).",
@@ -146,7 +146,8 @@ impl Compared {
             ),
             Section::new(
                 "Ours, rays, ten times the difference (figure 8)",
-                "Black in the difference: pixels that see a silhouette of the receiver, or that face away from the light.",
+                "The difference is black where errors are not measured: in pixels that see a silhouette of the \
+                 receiver or a surface that faces away from the light.",
                 vec![Content::Gallery(
                     self.cases
                         .into_iter()
@@ -172,7 +173,7 @@ fn differences(cases: &[Case]) -> Table {
         column("silhouette", "Mean difference of visibility over the silhouette pixels", "", |c: &&Case| {
             text::metric(c.over_silhouette)
         }),
-        column("half in shadow", "Mean difference over the pixels that are neither lit nor dark", "", |c: &&Case| {
+        column("partly in shadow", "Mean difference over the pixels that are partly in shadow", "", |c: &&Case| {
             text::metric(c.over_partial)
         }),
         column(
@@ -182,9 +183,12 @@ fn differences(cases: &[Case]) -> Table {
             "",
             move |c: &&Case| stat(c, "valid samples"),
         ),
-        column("valid, half in shadow", "The same over pixels that are neither lit nor dark", "", move |c: &&Case| {
-            stat(c, "valid samples half in shadow")
-        }),
+        column(
+            "valid, partly in shadow",
+            "The same over the pixels that are partly in shadow",
+            "",
+            move |c: &&Case| stat(c, "valid samples partly in shadow"),
+        ),
         column("pixels", "Silhouette pixels", "", |c: &&Case| {
             text::or_dash(c.stats.get("silhouette pixels").map(|n| text::count(*n as u64)))
         }),

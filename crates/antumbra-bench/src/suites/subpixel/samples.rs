@@ -47,6 +47,6 @@ pub fn section(trials: &[Trial]) -> Section {
         "Milliseconds over samples (figure 10)",
         "The paper, pterosaur: supersampling grows with the samples, to about 180 ms at 32 and 350 ms at 64; sub-pixel \
          masks stay near 15 ms at all rates.",
-        vec![Lines::new("samples per pixel", "milliseconds a frame", curves).into()],
+        vec![Lines::new("samples per pixel", "milliseconds per frame", curves).into()],
     )
 }

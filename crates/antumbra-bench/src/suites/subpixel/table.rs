@@ -219,7 +219,7 @@ pub fn costs(trials: &[Trial], curves: &[Trial]) -> Section {
     let rows = AIMS.iter().map(|aim| (aim, sorted(&ratios, aim)));
     Section::new(
         "What samples cost",
-        "The paper: 49 frames a second for alias-free shadow maps at one sample, 41 at 32 samples.",
+        "The paper: 49 frames per second for alias-free shadow maps at one sample, 41 at 32 samples.",
         vec![Table::new(&columns, format!("{} scenes", trials.len()), rows).into()],
     )
 }

@@ -64,8 +64,8 @@ pub fn experiments(runner: &Runner) -> Result<Vec<Experiment>, Error> {
 const SHARED_PASSES: [(&str, &str, &str); 6] = [
     ("culling", "Choosing what is drawn into the map", "cluster culling"),
     ("depth", "Depth of the nearest casters", "depth map"),
-    ("background", "Depth of the farthest surfaces that only take shadows", "background map"),
-    ("storing", "Moments from depths", "moments"),
+    ("background", "Depth of the farthest surfaces that only receive", "background map"),
+    ("storing", "Computing the moments of the depths", "moments"),
     ("blur", "Gaussian over the map", "moment blur"),
     ("mips", "Reducing the map to coarser levels", "moment mip chain"),
 ];
@@ -92,13 +92,13 @@ fn section(title: &str, trials: &[Trial], fps: &[[f64; 4]; 6], what: &str) -> Se
 
 /// Speeds, ours beside the paper's.
 fn speeds(trials: &[Trial], fps: &[[f64; 4]; 6]) -> Table {
-    /// The last: the row's place, and the paper's frames per second over those of its shadow map.
+    /// Trial, run, index in [`ROWS`], and the paper's frames per second over those of its shadow map.
     type Row<'a> = (&'a Trial, &'a Run, (usize, f64));
     let columns = [
         columns::technique(),
         column("in the paper", "The paper's name for it", "", |(_, _, (i, _)): &Row| ROWS[*i].0.to_owned()),
         columns::ms(),
-        column("speed", "Milliseconds of the plain shadow map over these", "", |(trial, run, _): &Row| {
+        column("speed", "Milliseconds of the plain shadow map over those of this row", "", |(trial, run, _): &Row| {
             text::ratio(run.speed_over(&trial.runs[0]))
         }),
         column(
@@ -121,7 +121,7 @@ fn speeds(trials: &[Trial], fps: &[[f64; 4]; 6]) -> Table {
 /// Milliseconds of each shared pass, then of all others together.
 fn passes(trials: &[Trial]) -> Table {
     type Row<'a> = (&'a Trial, &'a Run);
-    let ms = |run: &Run, is: &dyn Fn(&Pass) -> bool| text::or_dash(run.cost.ms_of(is).map(text::ms));
+    let ms = |run: &Run, selects: &dyn Fn(&Pass) -> bool| text::or_dash(run.cost.ms_of(selects).map(text::ms));
     let shared = SHARED_PASSES.map(|(heading, help, name)| {
         column(heading, help, "ms", move |(_, run): &Row| ms(run, &|pass| !pass.host && pass.name == name))
     });
@@ -133,7 +133,7 @@ fn passes(trials: &[Trial]) -> Table {
     Table::grouped(&columns, trials.iter().map(|trial| (trial.name.clone(), trial.rows())))
 }
 
-/// Blurred moments beside bilinear comparisons of the same width, at a map of 512.
+/// Speed of blurred moments over bilinear comparisons of the same width.
 fn blurred_over_compared(trial: &Trial) -> Option<f64> {
     let of = |i: usize| trial.runs.get(i);
     Some(of(5)?.speed_over(of(4)?))

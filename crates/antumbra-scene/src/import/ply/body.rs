@@ -1,4 +1,4 @@
-//! The body: the properties of every item, in sequence.
+//! The body of a PLY file: the properties of every item, in sequence.
 
 use super::header::{Element, Encoding, Header, Kind, Property};
 use crate::{Place, SceneError};

@@ -1,4 +1,4 @@
-//! Warnings of faults that an image will have.
+//! Warnings about errors that an image will have.
 
 use super::SsmSettings;
 use super::settings::Format;
@@ -11,25 +11,26 @@ pub fn largest_float16_q(receiver_q: f32, tan_half: f32, size: f32, light: f32) 
     receiver_q + 64.0 * tan_half / (size * light)
 }
 
-/// The warnings of a frame, a sentence each.
+/// The warnings of a frame, one sentence each.
 pub(super) fn of_frame(frame: &BoundFrame, settings: &SsmSettings) -> Vec<String> {
     let bounds = frame.casters.occluder_bounds();
     if bounds.min.x > bounds.max.x {
-        let none = "ssm: nothing casts, as no surface is above another one (`Role::Caster`): all receivers are lit";
+        let none = "ssm: no mesh is a caster, as none is above another surface (`Role::Caster`): all receivers are lit";
         return if frame.casters.triangle_count() > 0 { vec![none.to_owned()] } else { Vec::new() };
     }
     let corners = bounds.corners().map(|c| frame.light.light_from_world(c));
     let nearest = corners.iter().fold(f32::INFINITY, |z, c| z.min(c.z)).max(frame.frustum.near);
     let [_, farthest_receiver] = frame.frustum.receivers;
     let mut warnings = Vec::new();
-    // With a hierarchy a window is up to twice as wide as `window` patches, over the nearest receiver.
-    let is_flat = !settings.hierarchy || settings.window >= 16;
-    if settings.format == Format::Float16 && is_flat {
+    // float16 loses patches whose window is over 32 times as wide as they are. With a hierarchy the window over the
+    // nearest receiver is at most 2 `window` times as wide.
+    let may_lose = !settings.hierarchy || settings.window >= 16;
+    if settings.format == Format::Float16 && may_lose {
         let limit = |axis: usize| {
             let (tan, light) = (frame.frustum.tan_half[axis], frame.light.size[axis]);
             largest_float16_q(1.0 / farthest_receiver, tan, settings.map as f32, light)
         };
-        // The paper's condition is for squares; the light may be longer than wide.
+        // The paper's condition is for a square light; this one may be longer along one axis.
         if 1.0 / nearest > limit(0).max(limit(1)) {
             warnings.push(format!(
                 "ssm: with format=float16 patches nearer to the light than {:.3} m may be lost [Atty 2006, equation \
@@ -43,7 +44,7 @@ pub(super) fn of_frame(frame: &BoundFrame, settings: &SsmSettings) -> Vec<String
         let degrees = 2.0 * frame.frustum.tan_half.max_element().atan().to_degrees();
         warnings.push(format!(
             "ssm: occluders extend beyond the map's {degrees:.0} degrees and cast no shadow from there: set a wider \
-             `shadow_fov_deg`, or none"
+             `shadow_fov_deg` or remove it"
         ));
     }
     warnings

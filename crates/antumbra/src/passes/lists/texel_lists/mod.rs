@@ -29,7 +29,7 @@ const BLOCK_BYTES: u64 = 12;
 pub struct TexelLists {
     /// The uniform of `shaders/texel_lists.wesl`.
     pub uniform: wgpu::Buffer,
-    /// The end of each texel's list (`u32`); it begins at the end of the texel's before.
+    /// The end of each texel's list (`u32`); it begins at the end of the list before.
     pub ends: wgpu::Buffer,
     /// `Block`: which texels of a block of 8 x 8 have a list, and the farthest receiver.
     pub blocks: wgpu::Buffer,
@@ -60,7 +60,7 @@ impl TexelLists {
         }
     }
 
-    /// Number of entries of all lists. It may exceed the capacity: entries beyond are not written.
+    /// Number of entries of all lists. It may exceed the capacity; entries beyond the capacity are not written.
     pub fn length(&self) -> &ListLength {
         &self.scan.total
     }
@@ -70,8 +70,8 @@ impl TexelLists {
         binding_array! { ends: &self.ends, entries: &self.entries }
     }
 
-    /// Lists each pixel in the texels that the module `listed` at `part` gives; the module binds `more`. The key of
-    /// [`TexelLists::key`] may have features.
+    /// Lists each pixel in the texels that the module `listed` gives. `key` is that of [`TexelLists::key`], with the
+    /// features of the module; `more` are the bindings of the module.
     pub fn record(
         &self,
         recorder: &mut Recorder,

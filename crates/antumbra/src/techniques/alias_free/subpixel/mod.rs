@@ -225,8 +225,8 @@ impl Technique for Subpixel {
                 ("silhouette pixels", pixels[0]),
                 ("visibility evaluations", evaluations[0] + evaluations[1] * 4_294_967_296.0),
                 ("valid samples", pixels[1] / pixels[0].max(1.0)),
-                ("pixels half in shadow", pixels[2]),
-                ("valid samples half in shadow", pixels[3] / pixels[2].max(1.0)),
+                ("pixels partly in shadow", pixels[2]),
+                ("valid samples partly in shadow", pixels[3] / pixels[2].max(1.0)),
                 ("strips", f64::from(self.plan.strip_count())),
             ])
         })
