@@ -135,15 +135,15 @@ impl<'a> FrustumFit<'a> {
 
     /// The frustum, once the iterator has ended.
     pub fn finish(self) -> ShadowFrustum {
-        let Some(tan_half) = self.tan_half().filter(|_| !self.seen.is_empty()) else {
-            return ShadowFrustum::around(&self.scene.light, &self.scene.bounds());
-        };
+        let around = ShadowFrustum::around(&self.scene.light, &self.scene.bounds());
+        let Some(tan_half) = self.tan_half().filter(|_| !self.seen.is_empty()) else { return around };
         let (within, nearest_q) = (self.within, self.casting.nearest_q);
         let far = 1.0 / if within.is_empty() { self.seen.far_q } else { within.far_q };
         // Surfaces nearer to the light than every caster take no shadow.
         let near = 1.0 / within.near_q.min(nearest_q).max(1.0 / far);
         let (near, nearest_caster) = (near.max(NEAREST * far), (1.0 / nearest_q).min(far));
-        ShadowFrustum { tan_half, near: near_of(nearest_caster, far), receivers: [near, far], nearest_caster }
+        let depth_near = near_of(nearest_caster, around.receivers[1]);
+        ShadowFrustum { tan_half, near: depth_near, receivers: [near, far], nearest_caster }
     }
 }
 
@@ -185,7 +185,7 @@ fn tan_half_of(fov_deg: f32) -> Vec2 {
 
 /// A near plane before the nearest caster: inverse distances are stored as floating-point numbers, so it may be close.
 fn near_of(nearest_caster: f32, far: f32) -> f32 {
-    (0.5 * nearest_caster).min(1e-4 * far).max(1e-7 * far)
+    (0.5 * nearest_caster).min(1e-4 * far).max(1e-9 * far)
 }
 
 /// What a box takes of the widest frustum.
