@@ -94,7 +94,7 @@ fn ending(path: &Path) -> String {
 fn wrong_ending(found: &str, wanted: &str) -> String {
     match found {
         "" => format!("the file's name should end in {wanted}"),
-        _ => format!("`.{found}` is not written here; the file's name should end in {wanted}"),
+        _ => format!("`.{found}` is not supported here; the file's name should end in {wanted}"),
     }
 }
 
@@ -173,7 +173,7 @@ fn take_permissions(new: &File, old: &Path) {
     let _ = new.set_permissions(old.permissions());
 }
 
-/// Checks before the work whether these outputs can be written.
+/// Checks whether these outputs can be written, before the work starts.
 pub fn check_files<'a>(outputs: impl IntoIterator<Item = &'a OutputFile>) -> Result<(), CliError> {
     let mut seen: Vec<&OutputFile> = Vec::new();
     for output in outputs {
@@ -200,7 +200,7 @@ fn ends_in_slash(path: &Path) -> bool {
 
 const ENDLESS: &str = "this link leads back to itself";
 
-/// Checks before the work whether a folder can be created, or written to if it exists.
+/// Checks whether a folder can be created, or written to if it exists, before the work starts.
 pub fn check_new_folder(path: &Path) -> Result<(), CliError> {
     let folder = links(path).last().unwrap_or_else(|| path.to_owned());
     if folder.is_symlink() {
@@ -218,7 +218,7 @@ fn check_folder(path: &Path, folder: &Path) -> Result<(), CliError> {
     if !folder.is_dir() {
         return Err(unwritable(path, format_args!("{shown} is a file, not a folder")));
     }
-    temporary(folder).map(drop).map_err(|e| unwritable(path, format_args!("the folder {shown} takes no files: {e}")))
+    temporary(folder).map(drop).map_err(|e| unwritable(path, format_args!("cannot create files in {shown}: {e}")))
 }
 
 fn unwritable(path: &Path, why: impl fmt::Display) -> CliError {
