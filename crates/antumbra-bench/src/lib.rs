@@ -22,4 +22,4 @@ pub mod truth;
 
 pub use error::Error;
 pub use monitor::{Monitor, Silent};
-pub use page::files::ReportError;
+pub use page::files::{ReportError, links};

@@ -1,14 +1,17 @@
 //! The command line.
 
-use crate::output::{ValuesFile, npy_path, png_path};
+use crate::output::{self, OutputFile, ValuesFile, any_file, npy_file, png_file, values_file};
 use antumbra::error::SpecError;
 use antumbra::techniques::TECHNIQUES;
 use antumbra::{AdapterChoice, Spec};
 use antumbra_bench::kit::Suite;
 use antumbra_bench::list;
 use antumbra_bench::studies::rho;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use std::path::PathBuf;
+use std::error::Error;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// Real-time soft shadows of area lights, compared with a ray-traced reference.
@@ -24,8 +27,10 @@ pub struct Cli {
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Render a scene with one technique
+    #[command(after_help = output::HELP)]
     Render(RenderArgs),
     /// Trace the reference: the visible fraction of the light at each pixel
+    #[command(after_help = output::HELP)]
     Reference(ReferenceArgs),
     /// Compare techniques with the reference: error, milliseconds and megabytes, as a table and as a report with images
     Compare(CompareArgs),
@@ -53,17 +58,17 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Image to write, a .png
-    #[arg(short, long, value_name = "FILE", group = "outputs", value_parser = png_path)]
-    pub output: Option<PathBuf>,
+    #[arg(short, long, value_name = "FILE", group = "outputs", value_parser = png_file())]
+    pub output: Option<OutputFile>,
     /// Technique and its settings: name:key=value,key=value; `antumbra techniques` lists them
-    #[arg(short, long, value_name = "SPEC", default_value = "backprojection")]
+    #[arg(short, long, value_name = "SPEC", default_value = "backprojection", value_parser = shown::<Technique>())]
     pub technique: Technique,
     /// Visible fraction of the light at each pixel to write: .npy (float32, height x width), .exr or .png (16-bit grey)
-    #[arg(long, value_name = "FILE", group = "outputs")]
+    #[arg(long, value_name = "FILE", group = "outputs", value_parser = values_file())]
     pub visibility: Option<ValuesFile>,
     /// Milliseconds and bytes by pass to write, a JSON file
-    #[arg(long, value_name = "FILE", group = "outputs")]
-    pub stats: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", group = "outputs", value_parser = any_file())]
+    pub stats: Option<OutputFile>,
     #[command(flatten)]
     pub gpu: GpuArgs,
 }
@@ -74,12 +79,12 @@ pub struct ReferenceArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Visible fraction of the light at each pixel to write: .npy (float32, height x width), .exr or .png (16-bit grey)
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", value_parser = values_file())]
     pub visibility: ValuesFile,
     /// Mask of the pixels whose errors count, to write: .npy (float32, height x width), 1 where a surface that faces
     /// the light covers the whole pixel, else 0
-    #[arg(long, value_name = "FILE", value_parser = npy_path)]
-    pub valid: Option<PathBuf>,
+    #[arg(long, value_name = "FILE", value_parser = npy_file())]
+    pub valid: Option<OutputFile>,
     #[command(flatten)]
     pub truth: TruthArgs,
 }
@@ -90,7 +95,7 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub scene: SceneArgs,
     /// Technique and its settings, name:key=value,key=value; repeatable; `all` stands for every technique
-    #[arg(short, long = "technique", value_name = "SPEC", required = true)]
+    #[arg(short, long = "technique", value_name = "SPEC", required = true, value_parser = shown::<Techniques>())]
     pub techniques: Vec<Techniques>,
     /// Folder of the report, created if missing: index.html, results.json, results.csv, pictures
     #[arg(short, long, value_name = "DIR")]
@@ -113,7 +118,7 @@ pub struct BenchArgs {
     /// Further scene to measure, named as for `render`; repeatable. The targets of `backprojection` need the Stanford
     /// bunny: a model with "bunny" in its file's name
     #[arg(long = "scene", value_name = "SCENE")]
-    pub scenes: Vec<String>,
+    pub scenes: Vec<OsString>,
     /// Size of the images in pixels [default: the suite's]
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
@@ -154,9 +159,9 @@ fn threshold(text: &str) -> Result<f64, String> {
 #[derive(Debug, Args)]
 pub struct ViewArgs {
     /// A .glb, .gltf, .obj or .ply file, a scene file (.toml or .json), or builtin:NAME [default: builtin:fence]
-    pub scene: Option<String>,
+    pub scene: Option<OsString>,
     /// Technique and its settings, name:key=value,key=value; one is shown beside the reference, two side by side
-    #[arg(short, long = "technique", value_name = "SPEC")]
+    #[arg(short, long = "technique", value_name = "SPEC", value_parser = shown::<Technique>())]
     pub techniques: Vec<Technique>,
     /// Size of the window in points [default: 1440x900]
     #[arg(long, value_name = "WxH")]
@@ -181,7 +186,7 @@ pub struct ListArgs {
 #[derive(Debug, Args)]
 pub struct SceneArgs {
     /// A .glb, .gltf, .obj or .ply file, a scene file (.toml or .json), or builtin:NAME (`antumbra scenes` lists them)
-    pub scene: String,
+    pub scene: OsString,
     /// Size of the image in pixels [default: the scene's own, else 768x768]
     #[arg(long, value_name = "WxH")]
     pub size: Option<Size>,
@@ -222,6 +227,14 @@ pub struct TruthArgs {
     pub no_cache: bool,
 }
 
+/// Reads a value as messages show it: a file that it names may have a name that is not UTF-8.
+fn shown<T>() -> impl TypedValueParser<Value = T>
+where
+    T: FromStr<Err: Error + Send + Sync> + Clone + Send + Sync + 'static,
+{
+    OsStringValueParser::new().try_map(|text| text.to_string_lossy().parse())
+}
+
 /// A technique with its settings.
 #[derive(Clone)]
 pub struct Technique(pub Spec);
@@ -254,7 +267,8 @@ fn with_files(text: &str) -> Result<String, SpecError> {
             value: format!("@{file}"),
             expected: format!("cannot read {file}: {e}"),
         };
-        let lines = std::fs::read_to_string(file.trim()).map_err(unread)?;
+        let lines = antumbra_scene::read_from_disk(Path::new(file.trim())).map_err(unread)?;
+        let lines = String::from_utf8_lossy(&lines);
         Ok(format!("{key}={}", lines.trim().replace(',', " ").replace('\n', ";")))
     };
     let parts: Vec<String> = values.split(',').map(part).collect::<Result<_, _>>()?;

@@ -9,7 +9,9 @@ mod progress;
 mod setup;
 mod warnings;
 
+use antumbra_bench::Monitor;
 use clap::Parser;
+use progress::Terminal;
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, AssertUnwindSafe};
 use std::process::ExitCode;
@@ -22,7 +24,7 @@ fn main() -> ExitCode {
     match panic::catch_unwind(AssertUnwindSafe(|| commands::run(&cli.command))) {
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => {
-            eprintln!("error: {error}");
+            Terminal.log(&format!("error: {error}"));
             ExitCode::from(error.exit_code())
         }
         Err(_) => ExitCode::FAILURE,
@@ -33,9 +35,9 @@ fn main() -> ExitCode {
 fn report_bug(info: &panic::PanicHookInfo) {
     let position = info.location().map_or(String::new(), |l| format!(" ({l})"));
     let what = info.payload_as_str().unwrap_or("no message");
-    eprintln!("error: this is a bug in antumbra, please report it: {what}{position}");
+    Terminal.log(&format!("error: this is a bug in antumbra, please report it: {what}{position}"));
     let trace = Backtrace::capture();
     if trace.status() == BacktraceStatus::Captured {
-        eprintln!("{trace}");
+        Terminal.log(&trace.to_string());
     }
 }

@@ -2,6 +2,7 @@
 
 use antumbra_bench::Monitor;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -34,7 +35,8 @@ impl Monitor for Terminal {
     }
 
     fn log(&self, line: &str) {
-        eprintln!("{line}");
+        // Unlike `eprintln!` this does not panic where stderr is a pipe whose reader is gone.
+        let _ = writeln!(std::io::stderr(), "{line}");
     }
 
     fn stop(&self) -> &AtomicBool {

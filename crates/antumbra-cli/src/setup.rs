@@ -1,9 +1,10 @@
 //! From arguments to a scene, a device and the settings of the reference.
 
 use crate::cli::{GpuArgs, SceneArgs, TruthArgs};
+use crate::progress::Terminal;
 use antumbra::{AdapterChoice, Gpu};
-use antumbra_bench::Error;
 use antumbra_bench::truth::TruthSettings;
+use antumbra_bench::{Error, Monitor};
 use antumbra_scene::Scene;
 use pollster::block_on;
 use std::sync::Arc;
@@ -29,7 +30,7 @@ pub fn gpu(args: &GpuArgs, size: [u32; 2]) -> Result<Gpu, Error> {
     gpu.check_size("image", size[0], size[1])?;
     // Errors outside of every error scope: by default they are a panic.
     gpu.device.on_uncaptured_error(Arc::new(|error| {
-        eprintln!("error: the GPU failed unexpectedly: {error}");
+        Terminal.log(&format!("error: the GPU failed unexpectedly: {error}"));
         std::process::exit(1);
     }));
     Ok(gpu)

@@ -11,7 +11,7 @@ use tracing_subscriber::util::SubscriberInitExt;
 
 /// Sends warnings of our own crates to stderr; those of drivers and libraries are too many.
 pub fn show() {
-    let lines = layer().event_format(Line).with_writer(std::io::stderr);
+    let lines = layer().event_format(Line).with_writer(std::io::stderr).log_internal_errors(false);
     let ours = Targets::new().with_target("antumbra", LevelFilter::WARN);
     // Fails only if a subscriber is installed already; it then shows them.
     let _ = tracing_subscriber::registry().with(lines).with(ours).try_init();

@@ -27,5 +27,5 @@ pub use error::{Place, SceneError};
 pub use light::RectLight;
 pub use load::{load, load_from, load_placed};
 pub use mesh::{Material, Mesh, Texture, Wrap};
-pub use read_file::ReadFile;
+pub use read_file::{ReadFile, read_from_disk};
 pub use scene::{Instance, Scene};

@@ -1,47 +1,48 @@
 //! From a scene argument to a scene.
 
-use crate::read_file::ReadFile;
+use crate::read_file::{ReadFile, read_from_disk};
 use crate::{Scene, SceneError, builtin};
 use glam::DVec3;
+use std::ffi::OsStr;
+use std::path::Path;
 
 /// Loads the scene that an argument names: `builtin:NAME[:key=value,…]`, a model (`.glb`, `.gltf`, `.obj`, `.ply`) or a
 /// scene file (`.toml`, `.json`), in upper or lower case.
-pub fn load(argument: &str) -> Result<Scene, SceneError> {
-    load_from(argument, &mut |file| std::fs::read(file))
+pub fn load(argument: &(impl AsRef<OsStr> + ?Sized)) -> Result<Scene, SceneError> {
+    load_from(argument, &mut |file| read_from_disk(file))
 }
 
 /// The same with files that `read` gives: where there is no disk.
-pub fn load_from(argument: &str, read: &mut ReadFile) -> Result<Scene, SceneError> {
+pub fn load_from(argument: &(impl AsRef<OsStr> + ?Sized), read: &mut ReadFile) -> Result<Scene, SceneError> {
     Ok(load_placed(argument, read)?.0)
 }
 
 /// The same with the point of the files' coordinates that is the scene's origin. It is 0 unless the scene lies so far
 /// away that it was moved; then whoever writes places for these files adds it.
-pub fn load_placed(argument: &str, read: &mut ReadFile) -> Result<(Scene, DVec3), SceneError> {
-    match argument.strip_prefix("builtin:") {
+pub fn load_placed(argument: &(impl AsRef<OsStr> + ?Sized), read: &mut ReadFile) -> Result<(Scene, DVec3), SceneError> {
+    let argument = argument.as_ref();
+    match argument.to_string_lossy().strip_prefix("builtin:") {
         Some(spec) => Ok((builtin::build(spec)?, DVec3::ZERO)),
-        None => load_file(argument, read),
+        None => load_file(Path::new(argument), read),
     }
 }
 
 #[cfg(not(feature = "import"))]
-fn load_file(argument: &str, _read: &mut ReadFile) -> Result<(Scene, DVec3), SceneError> {
+fn load_file(path: &Path, _read: &mut ReadFile) -> Result<(Scene, DVec3), SceneError> {
     let message = "this program is built without file formats; use builtin:NAME".to_string();
-    Err(SceneError::Argument { argument: argument.to_string(), message })
+    Err(SceneError::Argument { argument: path.display().to_string(), message })
 }
 
 #[cfg(feature = "import")]
 use files::load_file;
 #[cfg(feature = "import")]
 mod files {
-    use super::{DVec3, ReadFile, Scene, SceneError, builtin};
+    use super::{DVec3, Path, ReadFile, Scene, SceneError, builtin};
     use crate::import::{self, Model};
-    use std::path::Path;
 
     const MODELS: &str = ".glb, .gltf, .obj or .ply";
 
-    pub(super) fn load_file(argument: &str, read: &mut ReadFile) -> Result<(Scene, DVec3), SceneError> {
-        let path = Path::new(argument);
+    pub(super) fn load_file(path: &Path, read: &mut ReadFile) -> Result<(Scene, DVec3), SceneError> {
         let (mut scene, origin) = match extension(path).as_str() {
             #[cfg(feature = "scene-file")]
             "toml" => load_scene_file(path, crate::scene_file::Format::Toml, read)?,
@@ -53,7 +54,7 @@ mod files {
                 (model.into_scene(), origin)
             }
         };
-        scene.name = path.file_stem().map_or(argument.into(), |s| s.to_string_lossy().into_owned());
+        scene.name = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         Ok((scene, origin))
     }
 
@@ -87,7 +88,7 @@ mod files {
         };
         let bytes = bytes_of(path, read)?;
         let folder = path.parent().unwrap_or(Path::new(""));
-        parse(&bytes, &name, &mut |other| read(&folder.join(other).to_string_lossy()))
+        parse(&bytes, &name, &mut |other| read(&folder.join(other)))
     }
 
     /// Why a path that no importer takes is not a scene.
@@ -115,6 +116,6 @@ mod files {
             return Err(unknown(path, path.display().to_string()));
         }
         let fail = |source| SceneError::Read { file: path.display().to_string(), referrer: None, source };
-        read(&path.to_string_lossy()).map_err(fail)
+        read(path).map_err(fail)
     }
 }

@@ -77,7 +77,7 @@ async fn read(source: Source) -> Result<OpenScene, String> {
 pub fn from_files(name: &str, read: &mut ReadFile) -> Result<OpenScene, String> {
     let scene = load_from(name, read).map_err(|e| e.to_string())?;
     let is_file = !name.starts_with("builtin:") && is_scene_file(name);
-    let bytes = if is_file { read(name).ok() } else { None };
+    let bytes = if is_file { read(Path::new(name)).ok() } else { None };
     let text = bytes.and_then(|b| String::from_utf8(b).ok());
     Ok(OpenScene { source: name.to_owned(), text, scene: Arc::new(scene) })
 }

@@ -38,9 +38,17 @@ pub enum ReportError {
     Csv(#[from] csv::Error),
 }
 
-/// Writes files, each a relative path and its content, into the folder `to`, which is created if necessary. All files
-/// are written to a temporary folder and then moved in order, so a failure leaves no partial file.
+/// A path and where it leads, link by link. The last one is no link, or one of many that lead back to themselves.
+pub fn links(path: &Path) -> impl Iterator<Item = PathBuf> {
+    const MOST: usize = 40;
+    let next = |link: &PathBuf| Some(link.parent()?.join(fs::read_link(link).ok()?));
+    std::iter::successors(Some(path.to_owned()), next).take(MOST + 1)
+}
+
+/// Writes files, each a relative path and its content, into the folder `to`, which is created if necessary, behind a
+/// link too. All files are written to a temporary folder and then moved in order, so a failure leaves no partial file.
 pub fn write_all(files: &[(String, Vec<u8>)], to: &Path) -> Result<(), ReportError> {
+    let to = &links(to).last().unwrap_or_else(|| to.to_owned());
     let is_new = !to.exists();
     let written = write_and_move(files, to);
     if written.is_err() && is_new {

@@ -32,7 +32,7 @@ fn scenes(args: &BenchArgs) -> Result<Vec<Scene>, Error> {
     if !args.scenes.is_empty() && !chosen(args).any(|suite| suite.scenes) {
         tracing::warn!("--scene is for suites that take further scenes; the chosen suites do not");
     }
-    Ok(args.scenes.iter().map(|name| antumbra_scene::load(name)).collect::<Result<_, _>>()?)
+    Ok(args.scenes.iter().map(antumbra_scene::load).collect::<Result<_, _>>()?)
 }
 
 fn measure(suite: &Suite, runner: &Runner, args: &BenchArgs) -> Result<(), CliError> {

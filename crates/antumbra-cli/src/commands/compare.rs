@@ -16,7 +16,7 @@ pub fn run(args: &CompareArgs) -> Result<(), CliError> {
     let specs: Vec<&Spec> = args.techniques.iter().flat_map(|t| &t.0).map(|t| &t.0).collect();
     let comparison = comparison::compare(
         (&gpu, &Terminal),
-        (&args.scene.scene, &scene, size),
+        (&args.scene.scene.to_string_lossy(), &scene, size),
         &specs,
         args.gpu.frames,
         &setup::truth(&args.truth),

@@ -2,7 +2,7 @@
 
 use crate::cli::RenderArgs;
 use crate::error::CliError;
-use crate::output::{self, Outputs};
+use crate::output::{self, Outputs, ValuesFile};
 use crate::progress::Terminal;
 use crate::setup;
 use antumbra_bench::Monitor;
@@ -12,8 +12,8 @@ use std::collections::BTreeMap;
 
 /// Renders and writes the files of the command line.
 pub fn run(args: &RenderArgs) -> Result<(), CliError> {
-    let visibility_path = args.visibility.as_ref().map(|v| v.path.as_path());
-    output::check_files([args.output.as_deref(), visibility_path, args.stats.as_deref()].into_iter().flatten())?;
+    let visibility = args.visibility.as_ref().map(|v| &v.file);
+    output::check_files([args.output.as_ref(), visibility, args.stats.as_ref()].into_iter().flatten())?;
     let (scene, size) = setup::scene(&args.scene)?;
     let gpu = setup::gpu(&args.gpu, size)?;
     let loaded = LoadedScene::new(&gpu, &Terminal, &scene, size)?;
@@ -21,18 +21,18 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
     let rendered = loaded.render(spec, args.gpu.frames, Terminal.task("Rendering"))?;
 
     let mut outputs = Outputs::default();
-    if let Some(path) = &args.output {
-        outputs.stage(path, output::encode_rgb(size, &loaded.image()?.data))?;
+    if let Some(file) = &args.output {
+        outputs.stage(file, output::encode_rgb(size, &loaded.image()?.data))?;
     }
-    if let Some(file) = &args.visibility {
-        outputs.stage(&file.path, output::encode_values(file.format, size, &rendered.visibility))?;
+    if let Some(ValuesFile { file, format }) = &args.visibility {
+        outputs.stage(file, output::encode_values(*format, size, &rendered.visibility))?;
     }
-    if let Some(path) = &args.stats {
+    if let Some(file) = &args.stats {
         let stats = Stats {
             adapter: &gpu.info.name,
             technique: spec.technique.name,
             settings: &spec.settings,
-            scene: &args.scene.scene,
+            scene: &args.scene.scene.to_string_lossy(),
             width: size[0],
             height: size[1],
             triangles: scene.triangle_count(),
@@ -41,7 +41,7 @@ pub fn run(args: &RenderArgs) -> Result<(), CliError> {
             cost: &rendered.cost,
         };
         let json = serde_json::to_vec_pretty(&stats).map_err(Into::into);
-        outputs.stage(path, json.map(|json| [json, b"\n".to_vec()].concat()))?;
+        outputs.stage(file, json.map(|json| [json, b"\n".to_vec()].concat()))?;
     }
     Terminal.check()?;
     outputs.commit()

@@ -16,7 +16,7 @@ pub fn run(args: &ViewArgs) -> Result<(), CliError> {
         std::process::exit(130);
     });
     let options = Options {
-        scene: args.scene.clone(),
+        scene: args.scene.as_ref().map(|s| s.to_string_lossy().into_owned()),
         specs: args.techniques.iter().map(|t| t.0.clone()).collect(),
         adapter: args.adapter.clone().unwrap_or_default(),
         size: args.size.map(|s| s.0),

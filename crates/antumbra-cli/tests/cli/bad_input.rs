@@ -96,6 +96,7 @@ fn unwritable_outputs_are_refused_before_the_work() {
     place.refuses(&format!("{render} -o missing/out.png"), 2, &["missing/out.png", "mkdir -p missing"]);
     place.refuses(&format!("{render} -o taken/out.png"), 2, &["taken", "not a folder"]);
     place.refuses(&format!("{render} -o folder.png"), 2, &["folder.png", "is a folder"]);
+    place.refuses(&format!("{render} -o new.png/"), 2, &["new.png/", "is a folder"]);
     place.refuses(&format!("{render} -o out.jpg"), 2, &["out.jpg", ".png"]);
     place.refuses(&format!("{render} --visibility v.tiff"), 2, &["v.tiff", ".npy, .exr or .png"]);
     place.refuses(&format!("{render} -o same.png --visibility same.png"), 2, &["same.png", "its own"]);

@@ -6,6 +6,7 @@ mod compare;
 mod files;
 mod lists;
 mod meshes;
+mod outputs;
 mod stopping;
 mod study;
 

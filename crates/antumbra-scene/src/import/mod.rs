@@ -22,7 +22,7 @@ use crate::{Aabb, Camera, Instance, Material, Mesh, RectLight, SceneError};
 use glam::DVec3;
 
 /// Gives the bytes of a file that the imported file refers to, by the name it uses.
-pub use crate::ReadFile;
+pub type ReadFile<'a> = dyn FnMut(&str) -> std::io::Result<Vec<u8>> + 'a;
 
 /// Coordinates beyond this, in metres, leave single precision no range for the squares and products of rendering.
 const FARTHEST: f32 = 1e9;

@@ -60,3 +60,27 @@ fn what_is_no_scene_is_refused_with_the_way_out() {
     assert_says(load(&path(folder.path(), "t.toml")), &["s.toml", "scene file cannot be used here"]);
     assert_says(load(""), &["no such file"]);
 }
+
+#[cfg(unix)]
+#[test]
+fn names_need_not_be_utf8() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &[u8]| folder.path().join(OsStr::from_bytes(name));
+    std::fs::create_dir(at(b"m\xff")).unwrap();
+    let obj: Vec<u8> = [b"mtllib a\xff.mtl\nusemtl red\n", OBJ].concat();
+    std::fs::write(at(b"m\xff/a\xff.obj"), obj).unwrap();
+    std::fs::write(at(b"m\xff/a\xff.mtl"), "newmtl red\nKd 1 0 0\n").unwrap();
+    std::fs::write(at(b"m\xff/s.toml"), "[[meshes]]\npath = \"a\u{fffd}.obj\"\n").unwrap();
+    for file in [&b"m\xff/a\xff.obj"[..], b"m\xff/s.toml"] {
+        let scene = load(&at(file)).unwrap();
+        let color = scene.materials[scene.meshes[0].material].base_color;
+        assert_eq!(color.to_array(), [1.0, 0.0, 0.0, 1.0], "{} has its library", scene.name);
+    }
+    // As messages show it, if no other is shown the same.
+    let shown = at(b"m\xff/a\xff.obj").display().to_string();
+    assert_eq!(load(&shown).unwrap().name, "a\u{fffd}");
+    std::fs::write(at(b"m\xff/a\xfe.obj"), OBJ).unwrap();
+    assert_says(load(&shown), &["cannot read", "a\u{fffd}.obj"]);
+}

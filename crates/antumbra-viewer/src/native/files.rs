@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// Opens a file.
 pub async fn load(name: &str) -> Result<OpenScene, String> {
-    open::from_files(name, &mut |file| std::fs::read(file))
+    open::from_files(name, &mut |file| antumbra_scene::read_from_disk(file))
 }
 
 /// Opens a file that was dropped on the window.

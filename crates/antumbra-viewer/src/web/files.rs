@@ -15,7 +15,7 @@ use wasm_bindgen_futures::JsFuture;
 /// Opens the scene at an address. A reader cannot wait for a file that another file refers to: missing files
 /// are fetched, then reading starts again.
 pub async fn load(name: &str) -> Result<OpenScene, String> {
-    let mut known: BTreeMap<String, Result<Vec<u8>, String>> = BTreeMap::new();
+    let mut known: BTreeMap<PathBuf, Result<Vec<u8>, String>> = BTreeMap::new();
     loop {
         let mut missing = None;
         let opened = open::from_files(name, &mut |file| match known.get(file) {
@@ -27,7 +27,7 @@ pub async fn load(name: &str) -> Result<OpenScene, String> {
             }
         });
         let Some(file) = missing else { return opened };
-        let bytes = fetch(&file).await;
+        let bytes = fetch(&file.to_string_lossy()).await;
         known.insert(file, bytes);
     }
 }
@@ -59,7 +59,7 @@ pub async fn load_dropped(file: &Path, all: &[egui::DroppedFileHandle]) -> Resul
     open::from_files(&file.display().to_string(), &mut |name| {
         let missing =
             || io::Error::new(io::ErrorKind::NotFound, "drop it on the page together with the file that names it");
-        known.get(&file_name(Path::new(name))).cloned().ok_or_else(missing)
+        known.get(&file_name(name)).cloned().ok_or_else(missing)
     })
 }
 
