@@ -230,10 +230,13 @@ impl Seen {
 
     /// Adds a polygon in world space, or the part of it that lies within a frustum from the light.
     fn add(&mut self, polygon: &[Vec3], light: &RectLight, tan_half: Option<Vec2>) {
-        let in_light: Vec<Vec3> = polygon.iter().map(|p| light.light_from_world(*p)).collect();
-        let tan = tan_half.unwrap_or(Vec2::splat(MAX_TAN));
-        for l in clipped(&in_light, &window(-tan, tan, f32::MIN_POSITIVE)) {
-            let t = l.truncate() / l.z;
+        let mut in_light: Vec<Vec3> = polygon.iter().map(|p| light.light_from_world(*p)).collect();
+        if let Some(tan) = tan_half {
+            in_light = clipped(&in_light, &window(-tan, tan, f32::MIN_POSITIVE));
+        }
+        // What lies at the light's horizon receives next to nothing: it does not coarsen the grid.
+        for l in in_light.iter().filter(|l| l.z > 0.0) {
+            let t = (l.truncate() / l.z).clamp(Vec2::splat(-MAX_TAN), Vec2::splat(MAX_TAN));
             self.low = self.low.min(t);
             self.high = self.high.max(t);
             self.far_q = self.far_q.min(1.0 / l.z);
