@@ -183,7 +183,7 @@ fn a_view_keeps_its_direction() {
 
 #[test]
 fn a_loaded_scene_says_where_its_origin_is() {
-    let mut disk = |path: &str| match path {
+    let mut disk = |path: &std::path::Path| match path.to_str().unwrap_or_default() {
         "a.obj" => Ok(obj_at(ITALY).into_bytes()),
         "s.toml" => Ok(b"[[meshes]]\npath = \"a.obj\"\ntranslate = [0, 0, 1000]\n".to_vec()),
         _ => no_files(path),
