@@ -186,7 +186,7 @@ fn a_loaded_scene_says_where_its_origin_is() {
     let mut disk = |path: &std::path::Path| match path.to_str().unwrap_or_default() {
         "a.obj" => Ok(obj_at(ITALY).into_bytes()),
         "s.toml" => Ok(b"[[meshes]]\npath = \"a.obj\"\ntranslate = [0, 0, 1000]\n".to_vec()),
-        _ => no_files(path),
+        other => no_files(other),
     };
     assert_eq!(load_placed("a.obj", &mut disk).unwrap().1, ITALY);
     assert_eq!(load_placed("s.toml", &mut disk).unwrap().1, ITALY + dvec3(0.0, 0.0, 1000.0));
